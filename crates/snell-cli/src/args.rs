@@ -1,0 +1,255 @@
+//! What can be typed.
+
+use clap::builder::styling::{AnsiColor, Styles};
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use serde::de::IntoDeserializer;
+use serde::de::value::{Error as ValueError, StrDeserializer};
+use snell::film::Crop;
+use snell::scene::{Integrator, Rounding, Shadows, Transfer};
+use snell_formats::driver::Dialect;
+use std::path::PathBuf;
+
+const STYLES: Styles = Styles::styled()
+    .header(AnsiColor::Yellow.on_default().bold())
+    .usage(AnsiColor::Yellow.on_default().bold())
+    .literal(AnsiColor::Cyan.on_default());
+
+/// A ray tracer that shows its work: exact pictures of light that reflects and refracts.
+#[derive(Debug, Parser)]
+#[command(name = "snell", version, styles = STYLES, arg_required_else_help = true, after_help = "\
+Start here:
+  snell render lecture/default         the lecture's picture, as default.png
+  snell scenes                         what else is built in
+  snell scenes --save lecture/default  a copy to change
+
+Exit codes: 0 done, 1 difference or failure, 2 wrong usage, 3 the scene cannot be drawn, 130 stopped by ^C")]
+pub struct Arguments {
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    Render(Box<RenderArgs>),
+    Info(InfoArgs),
+    Scenes(ScenesArgs),
+    Convert(ConvertArgs),
+    Diff(DiffArgs),
+    /// Print the JSON Schema of scene files, for editors
+    Schema,
+    /// Print completions for a shell
+    #[command(after_help = "Example:\n  snell completions bash > ~/.local/share/bash-completion/completions/snell")]
+    Completions {
+        /// The shell
+        shell: clap_complete::Shell,
+    },
+}
+
+/// Render scenes to pictures
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  snell render lecture/default
+  snell render lecture/default -o glass.png --set material.glass.eta=1.5
+  snell render driver00.txt -o driver00.ppm --search models/
+  snell render lecture/default --size 4096x4096 --crop 1800,1800,400,400 -o rim.exr
+  snell render drivers/*.txt -o out/
+  snell render --from glass.png -o again.png")]
+pub struct RenderArgs {
+    /// Scene files, driver files, or names of built-in scenes
+    #[arg(required_unless_present = "from", value_name = "SCENE")]
+    pub scenes: Vec<String>,
+    /// The picture, or a folder for many; the ending decides the format: .png .ppm .exr .npy
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Format of the pictures in a folder
+    #[arg(long, value_name = "FORMAT", value_parser = ["png", "ppm", "exr", "npy"], default_value = "png")]
+    pub format: String,
+    /// Render a picture again, from what a PNG or EXR of Snell remembers
+    #[arg(long, value_name = "PICTURE", conflicts_with_all = [
+        "scenes", "size", "stretch", "crop", "depth", "integrator", "shadows", "transfer", "rounding", "set", "dialect",
+    ])]
+    pub from: Option<PathBuf>,
+
+    /// Width and height in pixels; another shape than the scene's shows more, `--stretch` does not
+    #[arg(long, value_name = "WxH", value_parser = size, help_heading = "Picture")]
+    pub size: Option<[u32; 2]>,
+    /// With --size: keep the bounds, even if pixels are no longer square
+    #[arg(long, requires = "size", help_heading = "Picture")]
+    pub stretch: bool,
+    /// Only this part: left, top, width, height in pixels
+    #[arg(long, value_name = "X,Y,W,H", value_parser = crop, help_heading = "Picture")]
+    pub crop: Option<Crop>,
+    /// The curve to 8 and 16 bit: linear or srgb
+    #[arg(long, value_name = "CURVE", value_parser = named::<Transfer>, help_heading = "Picture")]
+    pub transfer: Option<Transfer>,
+    /// The fraction in 8 and 16 bit: round or truncate
+    #[arg(long, value_name = "HOW", value_parser = named::<Rounding>, help_heading = "Picture")]
+    pub rounding: Option<Rounding>,
+    /// Bits per channel of a PNG: 8 or 16
+    #[arg(long, value_name = "N", value_parser = ["8", "16"], default_value = "8", help_heading = "Picture")]
+    pub bits: String,
+    /// Write PPM as bytes (P6) instead of text (P3)
+    #[arg(long, help_heading = "Picture")]
+    pub binary: bool,
+
+    /// How many bounces may follow the camera ray
+    #[arg(long, value_name = "N", help_heading = "Light")]
+    pub depth: Option<u32>,
+    /// The model of light: lecture, course2018 or course2020
+    #[arg(long, value_name = "NAME", value_parser = named::<Integrator>, help_heading = "Light")]
+    pub integrator: Option<Integrator>,
+    /// What blocks a light: off (nothing) or opaque (anything)
+    #[arg(long, value_name = "KIND", value_parser = named::<Shadows>, help_heading = "Light")]
+    pub shadows: Option<Shadows>,
+
+    #[command(flatten)]
+    pub reading: ReadingArgs,
+
+    /// Threads; 0: one for each core
+    #[arg(long, value_name = "N", default_value_t = 0, help_heading = "Work")]
+    pub threads: usize,
+    /// Edge of a tile in pixels; the picture does not depend on it
+    #[arg(long, value_name = "N", default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..=4096), help_heading = "Work")]
+    pub tile: u32,
+    /// Say nothing but errors
+    #[arg(short, long, help_heading = "Work")]
+    pub quiet: bool,
+    /// How to show progress on stderr
+    #[arg(long, value_name = "KIND", value_enum, default_value_t = ProgressKind::Auto, help_heading = "Work")]
+    pub progress: ProgressKind,
+}
+
+/// How scene files are read.
+#[derive(Debug, Args, Clone, Default)]
+#[command(next_help_heading = "Reading")]
+pub struct ReadingArgs {
+    /// Change a value of the scene; may be given many times
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+    /// Look for models here first; may be given many times
+    #[arg(long, value_name = "DIR")]
+    pub search: Vec<PathBuf>,
+    /// Year of a driver file, if it is not recognised: 2018, lecture, 2019 or 2020
+    #[arg(long, value_name = "YEAR", value_parser = dialect)]
+    pub dialect: Option<Dialect>,
+}
+
+impl From<&ReadingArgs> for snell_formats::LoadOptions {
+    fn from(args: &ReadingArgs) -> Self {
+        Self { search: args.search.clone(), dialect: args.dialect, set: args.set.clone() }
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ProgressKind {
+    /// A bar, if stderr is a terminal
+    Auto,
+    /// One JSON object a line
+    Json,
+}
+
+/// Say what is in a scene, a driver, or a picture made by Snell
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  snell info lecture/default
+  snell info driver00.txt
+  snell info glass.png           how it was made
+  snell info glass.png --scene   the text of its scene")]
+pub struct InfoArgs {
+    /// Scene file, driver file, built-in name, or picture
+    pub file: String,
+    /// Print the text of the scene and nothing else
+    #[arg(long)]
+    pub scene: bool,
+    #[command(flatten)]
+    pub reading: ReadingArgs,
+}
+
+/// List the built-in scenes, or save one to start from
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  snell scenes\n  snell scenes --save lecture/default -o mine.toml")]
+pub struct ScenesArgs {
+    /// Write this built-in scene to a file
+    #[arg(long, value_name = "NAME")]
+    pub save: Option<String>,
+    /// The file; NAME.toml in this folder if left out
+    #[arg(short, long, value_name = "FILE", requires = "save")]
+    pub output: Option<PathBuf>,
+    /// Overwrite the file if there is one
+    #[arg(long)]
+    pub force: bool,
+}
+
+/// Turn a driver file into a scene file (or TOML into JSON and back)
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  snell convert driver00.txt                  prints the scene
+  snell convert driver00.txt -o driver00.toml
+  snell convert lecture/default -o default.json")]
+pub struct ConvertArgs {
+    /// Driver file, scene file, or built-in name
+    pub file: String,
+    /// The scene file, .toml or .json; printed as TOML if left out
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Overwrite the file if there is one
+    #[arg(long)]
+    pub force: bool,
+    #[command(flatten)]
+    pub reading: ReadingArgs,
+}
+
+/// Compare two pictures; exit code 1 if they differ by more than the tolerance
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  snell diff mine.ppm course.ppm
+  snell diff a.npy b.npy --tolerance 1e-9
+  snell diff a.png b.png -o difference.png
+
+Pictures with 8 or 16 bit are compared in steps of 8 bit (0 to 255), EXR and NPY by their numbers.")]
+pub struct DiffArgs {
+    /// A picture: .png .ppm .exr .npy
+    pub a: PathBuf,
+    /// Another one
+    pub b: PathBuf,
+    /// Differences up to this count as none
+    #[arg(short, long, value_name = "X", default_value_t = 0.0)]
+    pub tolerance: f64,
+    /// Write a picture of the difference, brightened so that the largest is white
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+}
+
+/// A value by the name that it has in scene files.
+fn named<T: for<'de> serde::Deserialize<'de>>(text: &str) -> Result<T, String> {
+    let deserializer: StrDeserializer<'_, ValueError> = text.into_deserializer();
+    T::deserialize(deserializer).map_err(|e| e.to_string().replace("variant", "value"))
+}
+
+fn dialect(text: &str) -> Result<Dialect, String> {
+    let names: Vec<&str> = Dialect::ALL.iter().map(|d| d.name()).collect();
+    let text = if text == "2017" { "2018" } else { text };
+    let found = Dialect::ALL.into_iter().find(|d| d.name() == text);
+    found.ok_or_else(|| format!("expected one of {}", names.join(", ")))
+}
+
+fn size(text: &str) -> Result<[u32; 2], String> {
+    let side = |s: &str| s.trim().parse::<u32>().ok().filter(|&v| v > 0);
+    text.split_once(['x', 'X'])
+        .and_then(|(w, h)| Some([side(w)?, side(h)?]))
+        .ok_or_else(|| "expected width x height in pixels, at least 1, like 640x480".to_owned())
+}
+
+fn crop(text: &str) -> Result<Crop, String> {
+    let parts: Vec<u32> = text.split(',').map_while(|s| s.trim().parse().ok()).collect();
+    match parts.as_slice() {
+        &[x, y, width, height] if width > 0 && height > 0 && text.split(',').count() == 4 => {
+            Ok(Crop { x, y, width, height })
+        }
+        _ => Err("expected left,top,width,height in pixels, like 100,50,64,64".to_owned()),
+    }
+}

@@ -1,0 +1,117 @@
+//! `snell info`.
+
+use crate::args::InfoArgs;
+use crate::progress::short;
+use crate::recipe::Recipe;
+use crate::say::{self, FAILED, Failure, OrFail, Outcome, SCENE};
+use snell::scene::Scene;
+use snell::world::World;
+use snell_formats::load::Loaded;
+use snell_formats::picture::{self, Format, Picture};
+use snell_formats::{LoadOptions, Report, load};
+use std::fmt::Write;
+use std::path::Path;
+
+pub fn run(args: &InfoArgs) -> Outcome {
+    let path = Path::new(&args.file);
+    if path.is_file() && Format::of(path).is_ok() {
+        return about_picture(&picture::read(path).or_fail(FAILED)?, args);
+    }
+    let loaded = load(&args.file, &LoadOptions::from(&args.reading)).or_fail(SCENE)?;
+    if args.scene {
+        return say::print(&loaded.source.text);
+    }
+    let world = loaded.world().or_fail(SCENE)?;
+    say::print(&about_scene(&loaded, &world))?;
+    loaded.warnings.iter().for_each(say::report);
+    world.warnings.iter().for_each(|w| say::report(&loaded.warning(w)));
+    Ok(())
+}
+
+fn about_picture(picture: &Picture, args: &InfoArgs) -> Outcome {
+    let bits = picture.max.map_or("floating point".to_owned(), |max| format!("0 to {max}"));
+    let mut text = format!("{}: {} x {} pixels, {bits}\n", args.file, picture.width, picture.height);
+    let recipe = picture.recipe.as_ref().and_then(|r| serde_json::from_str::<Recipe>(r).ok());
+    let Some(recipe) = recipe else {
+        if args.scene {
+            let report = Report::error(format!("`{}` does not say how it was made", args.file));
+            return Err(Failure::new(FAILED, report));
+        }
+        text.push_str("it does not say how it was made\n");
+        return say::print(&text);
+    };
+    if args.scene {
+        return say::print(&recipe.text);
+    }
+    let _ = writeln!(text, "made by      Snell {}", recipe.snell);
+    let _ = writeln!(text, "scene        {} (its text: --scene)", recipe.name);
+    for change in &recipe.set {
+        let _ = writeln!(text, "changed      {change}");
+    }
+    if let Some([width, height]) = recipe.size {
+        let _ = writeln!(text, "size         {width} x {height}");
+    }
+    if let Some(crop) = recipe.crop {
+        let _ = writeln!(text, "crop         {},{},{},{}", crop.x, crop.y, crop.width, crop.height);
+    }
+    for model in &recipe.models {
+        let _ = writeln!(text, "model        {}", model.path.display());
+    }
+    let film = recipe.film_sha256.unwrap_or_else(|| "not finished".to_owned());
+    let _ = writeln!(text, "film         {film}");
+    let _ = writeln!(text, "again        snell render --from {}", args.file);
+    say::print(&text)
+}
+
+/// More spheres than this are counted, not listed.
+const SHOWN: usize = 20;
+
+fn about_scene(loaded: &Loaded, world: &World) -> String {
+    let Scene { render, camera, lights, materials, spheres, meshes, .. } = &loaded.scene;
+    let mut text = format!("{}\n", loaded.source.name);
+    let mut line = |name: &str, value: String| {
+        let _ = writeln!(text, "  {name:12}{value}");
+    };
+    if let Some(dialect) = loaded.dialect {
+        line("dialect", dialect.name().to_owned());
+    }
+    let name = |value: &dyn std::fmt::Debug| format!("{value:?}").to_lowercase();
+    line(
+        "integrator",
+        format!("{}, depth {}, shadows {}", name(&render.integrator), render.max_depth, name(&render.shadows)),
+    );
+    line(
+        "picture",
+        format!("{} x {}, {}, {}", render.size[0], render.size[1], name(&render.transfer), name(&render.rounding)),
+    );
+    line("camera", format!("at {:?}, looks at {:?}, bounds {:?}", camera.eye, camera.look_at, camera.bounds));
+    for (i, light) in lights.iter().enumerate() {
+        let place = match (light.position, light.direction) {
+            (Some(p), _) => format!("at {p:?}"),
+            (_, Some(d)) => format!("at infinity towards {d:?}"),
+            _ => String::new(),
+        };
+        let title = light.name.clone().unwrap_or_else(|| (i + 1).to_string());
+        line("light", format!("{title}: {place}, {:?}", light.color.to_array()));
+    }
+    for (name, m) in materials {
+        let [ka, kd, ks, kr, ko] = [m.ka, m.kd, m.ks, m.kr, m.ko]
+            .map(|c| if c.r == c.g && c.g == c.b { c.r.to_string() } else { format!("{:?}", c.to_array()) });
+        line("material", format!("{name}: ka {ka} kd {kd} ks {ks} kr {kr} ko {ko} spow {} eta {}", m.spow, m.eta));
+    }
+    for sphere in spheres.iter().take(SHOWN) {
+        let title = sphere.name.as_deref().unwrap_or("sphere");
+        line("sphere", format!("{title}: at {:?}, radius {}, {}", sphere.center, sphere.radius, sphere.material));
+    }
+    if spheres.len() > SHOWN {
+        line("", format!("… and {} more spheres", spheres.len() - SHOWN));
+    }
+    for (mesh, path) in meshes.iter().zip(&loaded.mesh_paths) {
+        let faces = mesh.geometry.as_ref().map_or(mesh.faces.len(), |g| g.faces.len());
+        let title = path.as_ref().map_or("written out".to_owned(), |p| p.display().to_string());
+        line("mesh", format!("{title}: {faces} triangles"));
+    }
+    let memory = short(world.memory() as f64);
+    line("world", format!("{} primitives, {memory}B", world.primitive_count()));
+    text
+}

@@ -1,0 +1,87 @@
+//! Showing how far a render is: a bar for people, lines of JSON for programs.
+
+use crate::args::ProgressKind;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use serde_json::json;
+use snell::render::Progress;
+use std::sync::Mutex;
+use std::time::{Duration, Instant};
+
+/// JSON lines come at most this often.
+const JSON_INTERVAL: Duration = Duration::from_millis(100);
+
+pub enum Reporter {
+    Silent,
+    Bar(ProgressBar),
+    Json { started: Instant, last: Mutex<Option<Instant>> },
+}
+
+impl Reporter {
+    pub fn new(kind: ProgressKind, quiet: bool, what: &str) -> Self {
+        match kind {
+            ProgressKind::Json => Self::Json { started: Instant::now(), last: Mutex::new(None) },
+            ProgressKind::Auto if quiet => Self::Silent,
+            ProgressKind::Auto => {
+                // Hidden by itself where stderr is no terminal.
+                let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr_with_hz(10));
+                let colors = if crate::say::colored() { ".yellow/dim" } else { "" };
+                let template = format!("{{prefix}} {{bar:40{colors}}} {{percent:>3}} %  {{msg}}  {{eta}} left");
+                if let Ok(style) = ProgressStyle::with_template(&template) {
+                    bar.set_style(style.progress_chars("━╸─"));
+                }
+                bar.set_prefix(what.to_owned());
+                Self::Bar(bar)
+            }
+        }
+    }
+
+    pub fn update(&self, progress: Progress) {
+        match self {
+            Self::Silent => {}
+            Self::Bar(bar) => {
+                bar.set_length(progress.total_pixels);
+                bar.set_position(progress.pixels);
+                let seconds = bar.elapsed().as_secs_f64();
+                bar.set_message(format!("{} rays/s", short(progress.rays as f64 / seconds.max(1e-9))));
+            }
+            Self::Json { started, last } => {
+                let Ok(mut last) = last.lock() else { return };
+                if last.is_none_or(|at| at.elapsed() >= JSON_INTERVAL) {
+                    *last = Some(Instant::now());
+                    let Progress { pixels, total_pixels, rays } = progress;
+                    eprintln!(
+                        "{}",
+                        json!({
+                            "event": "progress", "pixels": pixels, "total_pixels": total_pixels, "rays": rays,
+                            "seconds": started.elapsed().as_secs_f64(),
+                        })
+                    );
+                }
+            }
+        }
+    }
+
+    pub fn finish(&self) {
+        if let Self::Bar(bar) = self {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+/// A number in three digits and a letter: 1.23 M.
+pub fn short(value: f64) -> String {
+    let (value, letter) = match value {
+        v if v >= 1e9 => (v / 1e9, " G"),
+        v if v >= 1e6 => (v / 1e6, " M"),
+        v if v >= 1e3 => (v / 1e3, " k"),
+        v => (v, " "),
+    };
+    let digits = if value >= 100.0 || letter == " " {
+        0
+    } else if value >= 10.0 {
+        1
+    } else {
+        2
+    };
+    format!("{value:.digits$}{letter}")
+}

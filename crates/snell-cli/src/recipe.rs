@@ -1,0 +1,168 @@
+//! Everything that decides the bits of a picture, and that a PNG or EXR remembers.
+
+use crate::args::RenderArgs;
+use crate::say::{Failure, OrFail, SCENE};
+use serde::{Deserialize, Serialize};
+use snell::film::Crop;
+use snell::scene::{Integrator, Rounding, Scene, Shadows, Transfer};
+use snell_formats::driver::Dialect;
+use snell_formats::load::{Kind, Loaded, ModelFile, load_text};
+use snell_formats::{LoadOptions, Report, Source, load};
+use std::path::PathBuf;
+
+/// How a picture is made: the text of its scene and all settings besides.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Recipe {
+    /// Version of Snell that made the picture.
+    pub snell: String,
+    /// Name of the scene: a file, or a built-in one.
+    pub name: String,
+    pub kind: Kind,
+    /// The text of the scene, as it was read.
+    pub text: String,
+    /// Folder that the names of models are relative to.
+    pub folder: PathBuf,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub dialect: Option<String>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub set: Vec<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub size: Option<[u32; 2]>,
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub stretch: bool,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub crop: Option<Crop>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub depth: Option<u32>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub integrator: Option<Integrator>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shadows: Option<Shadows>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub transfer: Option<Transfer>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rounding: Option<Rounding>,
+    /// Models that the scene reads, and their content.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub models: Vec<ModelFile>,
+    /// SHA-256 of the finished film's numbers.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub film_sha256: Option<String>,
+}
+
+impl Recipe {
+    /// Reads a scene and notes how it was read.
+    pub fn of(name: &str, args: &RenderArgs) -> Result<(Self, Loaded), Failure> {
+        let options = LoadOptions::from(&args.reading);
+        let loaded = load(name, &options).or_fail(SCENE)?;
+        let folder = std::path::absolute(&loaded.folder).unwrap_or_else(|_| loaded.folder.clone());
+        let recipe = Self {
+            snell: env!("CARGO_PKG_VERSION").to_owned(),
+            name: name.to_owned(),
+            kind: loaded.kind,
+            text: loaded.source.text.to_string(),
+            folder,
+            dialect: args.reading.dialect.map(|d| d.name().to_owned()),
+            set: args.reading.set.clone(),
+            size: args.size,
+            stretch: args.stretch,
+            crop: args.crop,
+            depth: args.depth,
+            integrator: args.integrator,
+            shadows: args.shadows,
+            transfer: args.transfer,
+            rounding: args.rounding,
+            models: loaded.models.iter().map(absolute).collect(),
+            film_sha256: None,
+        };
+        Ok((recipe, loaded))
+    }
+
+    /// Reads the scene of a recipe again. Its models must be what they were.
+    pub fn load(&self, search: &[PathBuf]) -> Result<Loaded, Failure> {
+        let known = |model: &ModelFile| model.path.parent().map(PathBuf::from);
+        let options = LoadOptions {
+            search: search.iter().cloned().chain(self.models.iter().filter_map(known)).collect(),
+            dialect: Dialect::ALL.into_iter().find(|d| Some(d.name()) == self.dialect.as_deref()),
+            set: self.set.clone(),
+        };
+        let source = Source::new(self.name.as_str(), self.text.as_str());
+        let loaded = load_text(source, self.kind, &self.folder, &options).or_fail(SCENE)?;
+        let changed = loaded.models.iter().zip(&self.models).find(|(now, then)| now.sha256 != then.sha256);
+        if let Some((now, then)) = changed {
+            let message = format!("the model `{}` has changed since the picture was made", now.path.display());
+            let help = format!(
+                "it was {} with SHA-256 {}; show where that is with --search DIR",
+                then.path.display(),
+                then.sha256
+            );
+            return Err(Failure::new(SCENE, Report::error(message).help(help)));
+        }
+        Ok(loaded)
+    }
+
+    /// Puts the settings into the scene. Returns a note if the bounds were widened.
+    pub fn apply(&self, scene: &mut Scene) -> Option<String> {
+        let render = &mut scene.render;
+        render.max_depth = self.depth.unwrap_or(render.max_depth);
+        render.integrator = self.integrator.unwrap_or(render.integrator);
+        render.shadows = self.shadows.unwrap_or(render.shadows);
+        render.transfer = self.transfer.unwrap_or(render.transfer);
+        render.rounding = self.rounding.unwrap_or(render.rounding);
+        let size = self.size?;
+        let before = std::mem::replace(&mut render.size, size);
+        if self.stretch { None } else { widen(&mut scene.camera.bounds, before, size) }
+    }
+}
+
+fn absolute(model: &ModelFile) -> ModelFile {
+    let path = std::path::absolute(&model.path).unwrap_or_else(|_| model.path.clone());
+    ModelFile { path, sha256: model.sha256.clone() }
+}
+
+/// Widens the bounds so that pixels are square, if the new size has neither the old size's shape nor the bounds'.
+fn widen(bounds: &mut [f64; 4], before: [u32; 2], size: [u32; 2]) -> Option<String> {
+    let [left, right, bottom, top] = *bounds;
+    let (width, height) = (right - left, top - bottom);
+    let [w, h] = size.map(f64::from);
+    let same_shape = u64::from(before[0]) * u64::from(size[1]) == u64::from(before[1]) * u64::from(size[0]);
+    if same_shape || w * height.abs() == h * width.abs() {
+        return None;
+    }
+    // Pixels sit on the corners of the grid: n of them span n − 1 steps. A single pixel spans nothing.
+    let steps = size.map(|n| f64::from(n.max(2) - 1));
+    let step = (width.abs() / steps[0]).max(height.abs() / steps[1]);
+    let around = |a: f64, b: f64, span: f64| {
+        let (middle, half) = (f64::midpoint(a, b), span / 2.0 * (b - a).signum());
+        (middle - half, middle + half)
+    };
+    if step * steps[0] > width.abs() {
+        (bounds[0], bounds[1]) = around(left, right, step * steps[0]);
+    } else {
+        (bounds[2], bounds[3]) = around(bottom, top, step * steps[1]);
+    }
+    let [left, right, bottom, top] = *bounds;
+    Some(format!(
+        "{} x {} has another shape than the scene: to keep pixels square the bounds are widened to \
+         [{left:.4}, {right:.4}, {bottom:.4}, {top:.4}] (--stretch leaves them)",
+        size[0], size[1]
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn another_shape_shows_more_and_keeps_pixels_square() {
+        let mut bounds = [-2.0, 2.0, -2.0, 2.0];
+        assert!(widen(&mut bounds, [512, 512], [64, 64]).is_none());
+        assert!(widen(&mut bounds, [512, 512], [101, 51]).is_some());
+        assert_eq!(bounds, [-4.0, 4.0, -2.0, 2.0], "100 steps as wide as the 50 steps of 0.08 upwards");
+        let mut upright = [0.0, 2.0, 1.0, -1.0];
+        assert!(widen(&mut upright, [512, 512], [51, 101]).is_some());
+        assert_eq!(upright, [0.0, 2.0, 2.0, -2.0], "upside down stays upside down");
+        let mut wide = [-2.0, 2.0, -1.0, 1.0];
+        assert!(widen(&mut wide, [512, 512], [200, 100]).is_none(), "the bounds' own shape");
+    }
+}

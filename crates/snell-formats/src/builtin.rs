@@ -1,0 +1,49 @@
+//! The scenes that every Snell carries: all pictures of the lecture.
+
+use crate::report::{Report, Source, nearest};
+
+macro_rules! scenes {
+    ($($name:literal),* $(,)?) => {
+        /// Names and texts, in the order of the lecture.
+        pub const SCENES: &[(&str, &str)] =
+            &[$(($name, include_str!(concat!("../../../scenes/", $name, ".toml")))),*];
+    };
+}
+
+scenes![
+    "lecture/default",
+    "lecture/no-shadows",
+    "lecture/no-glass",
+    "lecture/eta-1.0",
+    "lecture/eta-1.05",
+    "lecture/germanium",
+    "lecture/diamond",
+    "lecture/diamond-depth-1",
+    "lecture/diamond-depth-2",
+    "lecture/diamond-depth-3",
+    "lecture/diamond-depth-4",
+    "lecture/diamond-depth-5",
+    "lecture/diamond-depth-6",
+    "lecture/wide",
+    "lecture/quarter",
+];
+
+/// The text of a built-in scene.
+///
+/// # Errors
+/// When there is none of this name.
+pub fn find(name: &str) -> Result<Source, Report> {
+    if let Some((name, text)) = SCENES.iter().find(|(n, _)| *n == name) {
+        Ok(Source::new(*name, *text))
+    } else {
+        let near = nearest(name, SCENES.iter().map(|(n, _)| *n));
+        let help = near.map_or_else(String::new, |n| format!("did you mean `{n}`? "));
+        let message = format!("there is no file and no built-in scene `{name}`");
+        Err(Report::error(message).help(help + "`snell scenes` lists the built-in ones"))
+    }
+}
+
+/// The comment at the top of a scene text, one string per paragraph line, without the `#`.
+pub fn description(text: &str) -> Vec<&str> {
+    text.lines().map_while(|line| line.strip_prefix('#')).map(str::trim).collect()
+}

@@ -1,0 +1,21 @@
+//! Files in and out of Snell.
+//!
+//! | in | out |
+//! | --- | --- |
+//! | [`load`](mod@load): scene files (TOML, JSON), the course's driver files, their models | [`scene_file`]: TOML, JSON, the JSON Schema |
+//! | [`picture`]: PNG, PPM, EXR, NPY, to compare or to read the recipe | [`picture`]: the same |
+//!
+//! Whatever is wrong with a file becomes a [`Report`] with the place, what was read, what was expected and what to do.
+
+pub mod builtin;
+pub mod disk;
+pub mod driver;
+pub mod load;
+pub mod model;
+pub mod picture;
+pub mod report;
+pub mod scene_file;
+mod words;
+
+pub use load::{LoadOptions, Loaded, load};
+pub use report::{Report, Source};

@@ -1,0 +1,170 @@
+//! Wavefront MTL: materials, read with the rule of the year.
+
+use crate::report::{Report, Source};
+use crate::words::{Line, lines};
+use snell::film::Rgb;
+use snell::scene::{Material, WarningCode};
+
+/// A material as the file has it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MtlMaterial {
+    /// After `newmtl`.
+    pub name: String,
+    ka: Rgb,
+    kd: Rgb,
+    ks: Rgb,
+    kr: Option<Rgb>,
+    exponent: Option<f64>,
+    illum: u32,
+}
+
+/// How a year reads the materials of polygons.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MtlRule {
+    /// Where the mirror coefficient comes from.
+    pub mirror: Mirror,
+    /// Exponent of the highlight where the file has none.
+    pub default_exponent: f64,
+}
+
+/// Where the mirror coefficient of a polygon comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Mirror {
+    /// (1, 1, 1), whatever the file says.
+    One,
+    /// `Kr`, or (1, 1, 1) without it.
+    KrOrOne,
+    /// `Ks` if `illum` is 3, else 0.
+    KsIfIllum3,
+    /// `Kr`; without it `Ks` if `illum` is 3, else 0.
+    KrOrKsIfIllum3,
+}
+
+impl MtlMaterial {
+    /// The gray of a model without a material.
+    pub fn gray() -> Self {
+        Self { name: "gray".to_owned(), ka: Rgb::gray(0.2), kd: Rgb::gray(0.5), ks: Rgb::gray(0.5), ..Self::default() }
+    }
+
+    /// The material by the rule of a year. Polygons are opaque.
+    pub fn material(&self, rule: MtlRule) -> Material {
+        let by_illum = if self.illum == 3 { self.ks } else { Rgb::gray(0.0) };
+        let kr = match rule.mirror {
+            Mirror::One => Rgb::gray(1.0),
+            Mirror::KrOrOne => self.kr.unwrap_or(Rgb::gray(1.0)),
+            Mirror::KsIfIllum3 => by_illum,
+            Mirror::KrOrKsIfIllum3 => self.kr.unwrap_or(by_illum),
+        };
+        Material {
+            ka: self.ka,
+            kd: self.kd,
+            ks: self.ks,
+            kr,
+            spow: self.exponent.unwrap_or(rule.default_exponent),
+            ..Material::default()
+        }
+    }
+}
+
+/// Reads an MTL file: the materials, and warnings about what is not drawn.
+///
+/// # Errors
+/// A number that is none, or a setting before the first `newmtl`.
+pub fn parse_mtl(source: &Source) -> Result<(Vec<MtlMaterial>, Vec<Report>), Report> {
+    let mut materials: Vec<MtlMaterial> = Vec::new();
+    let mut warnings = Vec::new();
+    for line in lines(source) {
+        let keyword = line.keyword.text;
+        if keyword == "newmtl" {
+            let name = line.rest.first().map_or(0, |w| w.range.start)..line.range().end;
+            let name = if line.rest.is_empty() { String::new() } else { source.text[name].to_owned() };
+            materials.push(MtlMaterial { name, ..MtlMaterial::default() });
+            continue;
+        }
+        let Some(material) = materials.last_mut() else {
+            return Err(line.error(format!("`{keyword}` stands before the first `newmtl`")));
+        };
+        match keyword {
+            "Ka" => material.ka = color(&line)?,
+            "Kd" => material.kd = color(&line)?,
+            "Ks" => material.ks = color(&line)?,
+            "Kr" => material.kr = Some(color(&line)?),
+            "Ns" => material.exponent = Some(single(&line)?),
+            "illum" => material.illum = line.rest.first().and_then(|w| w.text.parse().ok()).unwrap_or(0),
+            // Read by no integrator yet: emission, opacity, index, and their relatives in newer exporters.
+            "Ke" | "Ni" | "d" | "Tr" | "Tf" | "Pr" | "Pm" | "Ps" | "Pc" | "Pcr" | "aniso" | "anisor" | "sharpness" => {}
+            _ if keyword.starts_with("map_") || matches!(keyword, "bump" | "disp" | "decal" | "refl" | "norm") => {
+                warnings.push(texture(&line));
+            }
+            _ => {
+                let message = format!("unknown keyword `{keyword}` in a material: line ignored");
+                warnings.push(Report::warning(WarningCode::UnknownKeyword, message).at(source, line.range()));
+            }
+        }
+    }
+    Ok((materials, warnings))
+}
+
+fn texture(line: &Line<'_>) -> Report {
+    let file = line.rest.last().map_or("", |w| w.text);
+    let folder = std::path::Path::new(&*line.source.name).parent().unwrap_or(std::path::Path::new(""));
+    let missing = if folder.join(file).is_file() { "" } else { ", and the file is missing" };
+    let message = format!("the texture `{file}` is not drawn: only the colours of its material are{missing}");
+    Report::warning(WarningCode::TextureIgnored, message).at(line.source, line.range())
+}
+
+fn color(line: &Line<'_>) -> Result<Rgb, Report> {
+    let expected = "Ka, Kd, Ks or Kr, and red green blue, or one number for gray";
+    match line.numbers(expected)?.as_slice() {
+        &[v] => Ok(Rgb::gray(v)),
+        &[r, g, b] => Ok(Rgb::new(r, g, b)),
+        other => Err(line.count("1 or 3", other.len(), expected)),
+    }
+}
+
+fn single(line: &Line<'_>) -> Result<f64, Report> {
+    line.exactly::<1>("Ns exponent").map(|[v]| v)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const TWO: &str =
+        "# c\nnewmtl my wall\nNs 96\nKa .1 .2 .3\nKd 0.5\nKs 1 0 0\nillum 3\nNi 1.5\n\nnewmtl b\nKr .5 .5 .5\n";
+
+    #[test]
+    fn the_rule_of_the_year_decides_the_mirror() {
+        let (materials, warnings) = parse_mtl(&Source::new("m.mtl", TWO)).unwrap();
+        assert!(warnings.is_empty());
+        assert_eq!(materials[0].name, "my wall");
+        let kr = |i: usize, mirror| materials[i].material(MtlRule { mirror, default_exponent: 19.0 }).kr.to_array();
+        let (red, one, half) = ([1.0, 0.0, 0.0], [1.0; 3], [0.5; 3]);
+        assert_eq!((kr(0, Mirror::One), kr(1, Mirror::One)), (one, one));
+        assert_eq!((kr(0, Mirror::KrOrOne), kr(1, Mirror::KrOrOne)), (one, half));
+        assert_eq!((kr(0, Mirror::KsIfIllum3), kr(1, Mirror::KsIfIllum3)), (red, [0.0; 3]));
+        assert_eq!((kr(0, Mirror::KrOrKsIfIllum3), kr(1, Mirror::KrOrKsIfIllum3)), (red, half));
+        let rule = MtlRule { mirror: Mirror::One, default_exponent: 19.0 };
+        assert_eq!((materials[0].material(rule).spow, materials[1].material(rule).spow), (96.0, 19.0));
+        assert_eq!(materials[0].material(rule).kd.to_array(), [0.5; 3]);
+    }
+
+    #[test]
+    fn textures_and_unknown_words_are_warned_of() {
+        let (_, warnings) = parse_mtl(&Source::new("m.mtl", "newmtl a\nmap_Kd no.png\nKq 3\n")).unwrap();
+        assert!(warnings[0].message.contains("`no.png`") && warnings[0].message.contains("missing"));
+        assert_eq!(warnings[1].warning, Some("W101 unknown-keyword"));
+        assert!(parse_mtl(&Source::new("m.mtl", "Kd 1 1 1\n")).unwrap_err().message.contains("newmtl"));
+        assert!(parse_mtl(&Source::new("m.mtl", "newmtl a\nKd 1 1\n")).unwrap_err().message.contains("read 2"));
+    }
+
+    proptest! {
+        #[test]
+        fn no_text_breaks_the_reader(words in prop::collection::vec(
+            prop::sample::select(vec!["newmtl", "Ka", "Kd", "Ns", "illum", "map_Kd", "1", "-.5", "nan", "x", "\n", "#"]), 0..60,
+        )) {
+            let _ = parse_mtl(&Source::new("m.mtl", words.join(" ")));
+        }
+    }
+}

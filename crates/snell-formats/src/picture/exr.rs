@@ -1,0 +1,74 @@
+//! EXR: 32-bit float, linear, the data window the part that was rendered, the display window the whole picture.
+
+use super::{Picture, checked_pixels};
+use exr::prelude::*;
+use snell::film::{Film, Rgb};
+use std::io::{Cursor, Write as IoWrite};
+
+const KEYWORD: &str = "snell";
+
+pub(super) fn write(out: &mut dyn IoWrite, film: &Film, recipe: Option<&str>) -> std::io::Result<()> {
+    let (width, height) = (film.width(), film.height());
+    let pixel = |at: Vec2<usize>| {
+        let index = at.y() * width + at.x();
+        let [r, g, b] = film.pixels[index].to_array().map(|c| c as f32);
+        (r, g, b, if film.finished[index] { 1.0_f32 } else { 0.0 })
+    };
+    let mut attributes = LayerAttributes::named("");
+    attributes.software_name = Some(Text::from(concat!("Snell ", env!("CARGO_PKG_VERSION"))));
+    attributes.layer_position = Vec2(film.crop.x as i32, film.crop.y as i32);
+    if let Some(recipe) = recipe {
+        let bytes: attribute::TextBytes = recipe.bytes().collect();
+        attributes.other.insert(Text::from(KEYWORD), AttributeValue::Text(Text::from_bytes_unchecked(bytes)));
+    }
+    let display = IntegerBounds::from_dimensions(Vec2(film.full_size[0] as usize, film.full_size[1] as usize));
+    // One scan line block after the other, in this thread: the bytes do not depend on the machine.
+    let encoding = Encoding { compression: Compression::ZIP16, ..Encoding::FAST_LOSSLESS };
+    let mut bytes = Cursor::new(Vec::new());
+    let failed = |e: Error| std::io::Error::other(e.to_string());
+    if film.is_finished() {
+        let channels = SpecificChannels::rgb(|at| {
+            let (r, g, b, _) = pixel(at);
+            (r, g, b)
+        });
+        let layer = Layer::new((width, height), attributes, encoding, channels);
+        image(display, layer).write().non_parallel().to_buffered(&mut bytes).map_err(failed)?;
+    } else {
+        let layer = Layer::new((width, height), attributes, encoding, SpecificChannels::rgba(pixel));
+        image(display, layer).write().non_parallel().to_buffered(&mut bytes).map_err(failed)?;
+    }
+    out.write_all(bytes.get_ref())
+}
+
+fn image<C>(display: IntegerBounds, layer: Layer<C>) -> Image<Layer<C>> {
+    Image { attributes: ImageAttributes::new(display), layer_data: layer }
+}
+
+pub(super) fn read(bytes: &[u8]) -> std::result::Result<Picture, String> {
+    let image = exr::prelude::read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .rgba_channels(
+            |size, _| (size, vec![Rgb::gray(0.0); checked_pixels(size.0 as u64, size.1 as u64).unwrap_or(0)]),
+            |(size, pixels), at, (r, g, b, _): (f32, f32, f32, f32)| {
+                if let Some(pixel) = pixels.get_mut(at.y() * size.0 + at.x()) {
+                    *pixel = Rgb::new(f64::from(r), f64::from(g), f64::from(b));
+                }
+            },
+        )
+        .first_valid_layer()
+        .all_attributes()
+        .non_parallel()
+        .from_buffered(Cursor::new(bytes))
+        .map_err(|e| e.to_string())?;
+    let layer = image.layer_data;
+    let (size, pixels) = layer.channel_data.pixels;
+    if pixels.is_empty() {
+        return Err(format!("{} x {} is not a size that is read", size.0, size.1));
+    }
+    let recipe = match layer.attributes.other.get(&Text::from(KEYWORD)) {
+        Some(AttributeValue::Text(text)) => String::from_utf8(text.as_slice().to_vec()).ok(),
+        _ => None,
+    };
+    Ok(Picture { width: size.0, height: size.1, pixels, max: None, recipe })
+}

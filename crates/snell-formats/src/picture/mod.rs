@@ -1,0 +1,116 @@
+//! Pictures in and out.
+
+mod exr;
+mod npy;
+mod png;
+mod ppm;
+
+use crate::disk;
+use crate::report::{Report, nearest};
+use snell::film::transfer::Encoding;
+use snell::film::{Film, Rgb};
+use std::path::Path;
+
+/// A kind of picture file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// Portable Network Graphics; 8 or 16 bit.
+    Png {
+        /// 16 instead of 8.
+        sixteen_bit: bool,
+    },
+    /// Portable pixmap, 8 bit; `P3` as text or `P6` as bytes.
+    Ppm {
+        /// `P6` instead of `P3`.
+        binary: bool,
+    },
+    /// `OpenEXR`, 32-bit float, linear.
+    Exr,
+    /// `NumPy` array, float64, height x width x 3: the film as it is.
+    Npy,
+}
+
+const ENDINGS: &[&str] = &["png", "ppm", "exr", "npy"];
+
+impl Format {
+    /// The format that a file name asks for.
+    ///
+    /// # Errors
+    /// When the ending is none of png, ppm, exr, npy.
+    pub fn of(path: &Path) -> Result<Self, Report> {
+        let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
+        match ending.as_str() {
+            "png" => Ok(Self::Png { sixteen_bit: false }),
+            "ppm" => Ok(Self::Ppm { binary: false }),
+            "exr" => Ok(Self::Exr),
+            "npy" => Ok(Self::Npy),
+            _ => {
+                let near =
+                    nearest(&ending, ENDINGS.iter().copied()).map_or(String::new(), |n| format!("did you mean .{n}? "));
+                Err(Report::error(format!("`{}` has no ending of a picture", path.display()))
+                    .help(near + "pictures are .png, .ppm, .exr or .npy"))
+            }
+        }
+    }
+}
+
+/// Writes a film. Unfinished pixels are transparent in PNG and EXR, NaN in NPY, black in PPM.
+///
+/// `recipe` is kept in PNG and EXR: what is needed to render the picture again.
+///
+/// # Errors
+/// When writing fails; what was there before stays.
+pub fn write(path: &Path, format: Format, film: &Film, encoding: Encoding, recipe: Option<&str>) -> Result<(), Report> {
+    disk::write(path, |out| match format {
+        Format::Png { sixteen_bit } => png::write(out, film, encoding, sixteen_bit, recipe),
+        Format::Ppm { binary } => ppm::write(out, film, encoding, binary),
+        Format::Exr => exr::write(out, film, recipe),
+        Format::Npy => npy::write(out, film),
+    })
+}
+
+/// A picture that was read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Picture {
+    /// Columns.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+    /// Pixels, row by row, row 0 on top. Integers as they stand in the file.
+    pub pixels: Vec<Rgb>,
+    /// The largest integer (255, 65535), or `None` for floating point.
+    pub max: Option<u32>,
+    /// What is needed to render it again, if the file says so.
+    pub recipe: Option<String>,
+}
+
+/// Pictures larger than this are not read, in pixels: 2^28, twelve gigabytes as `f64` with a copy.
+const MAX_PIXELS: u64 = 1 << 28;
+
+/// Reads a PNG, PPM, EXR or NPY picture.
+///
+/// # Errors
+/// When the file is not such a picture, is cut off, or is too large.
+pub fn read(path: &Path) -> Result<Picture, Report> {
+    let format = Format::of(path)?;
+    let bytes = disk::read(path, disk::MAX_MODEL_BYTES)?;
+    let picture = match format {
+        Format::Png { .. } => png::read(&bytes),
+        Format::Ppm { .. } => ppm::read(&bytes),
+        Format::Exr => exr::read(&bytes),
+        Format::Npy => npy::read(&bytes),
+    };
+    picture.map_err(|why| Report::error(format!("`{}` cannot be read: {why}", path.display())))
+}
+
+/// The number of pixels of a picture that claims this size, if that is acceptable.
+fn checked_pixels(width: u64, height: u64) -> Result<usize, String> {
+    match width.checked_mul(height) {
+        Some(0) | None => Err(format!("{width} x {height} is no size")),
+        Some(pixels) if pixels > MAX_PIXELS => Err(format!("{width} x {height} pixels are too many")),
+        Some(pixels) => Ok(pixels as usize),
+    }
+}
+
+#[cfg(test)]
+mod tests;

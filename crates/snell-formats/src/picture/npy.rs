@@ -1,0 +1,56 @@
+//! NPY: `NumPy`'s array file, version 1.0 (NEP 1), as float64 of shape height x width x 3.
+
+use super::{Picture, checked_pixels};
+use snell::film::{Film, Rgb};
+use std::io::Write;
+
+const MAGIC: &[u8] = b"\x93NUMPY";
+
+pub(super) fn write(out: &mut dyn Write, film: &Film) -> std::io::Result<()> {
+    let shape = format!("({}, {}, 3)", film.height(), film.width());
+    let mut header = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': {shape}, }}");
+    // Padded with spaces so that the data starts at a multiple of 64.
+    while !(MAGIC.len() + 4 + header.len() + 1).is_multiple_of(64) {
+        header.push(' ');
+    }
+    header.push('\n');
+    out.write_all(MAGIC)?;
+    out.write_all(&[1, 0])?;
+    out.write_all(&(header.len() as u16).to_le_bytes())?;
+    out.write_all(header.as_bytes())?;
+    for (pixel, &done) in film.pixels.iter().zip(&film.finished) {
+        for value in pixel.to_array() {
+            out.write_all(&(if done { value } else { f64::NAN }).to_le_bytes())?;
+        }
+    }
+    Ok(())
+}
+
+pub(super) fn read(bytes: &[u8]) -> Result<Picture, String> {
+    if !bytes.starts_with(MAGIC) {
+        return Err("it is no NPY file".to_owned());
+    }
+    let (length, start) = match (bytes.get(6), bytes.get(8..10), bytes.get(8..12)) {
+        (Some(1), Some(l), _) => (usize::from(l[0]) + usize::from(l[1]) * 256, 10),
+        (Some(2 | 3), _, Some(l)) => (u32::from_le_bytes([l[0], l[1], l[2], l[3]]) as usize, 12),
+        _ => return Err("its header is cut off or of an unknown version".to_owned()),
+    };
+    let header = bytes.get(start..start + length).ok_or("its header is cut off")?;
+    let header = String::from_utf8_lossy(header).replace([' ', '"'], "").replace('\'', "");
+    if !header.contains("descr:<f8") || !header.contains("fortran_order:False") {
+        return Err("expected little-endian float64 in C order ('<f8')".to_owned());
+    }
+    let shape = header.split("shape:(").nth(1).and_then(|s| s.split(')').next()).unwrap_or_default();
+    let shape: Vec<u64> = shape.split(',').filter(|s| !s.is_empty()).map_while(|s| s.parse().ok()).collect();
+    let &[height, width, 3] = shape.as_slice() else {
+        return Err(format!("expected the shape (height, width, 3), read {shape:?}"));
+    };
+    let count = checked_pixels(width, height)? * 24;
+    let data = bytes.get(start + length..).unwrap_or_default();
+    if data.len() < count {
+        return Err(format!("it is cut off: {} of {count} bytes of pixels are there", data.len()));
+    }
+    let values: Vec<f64> = data[..count].as_chunks::<8>().0.iter().map(|&b| f64::from_le_bytes(b)).collect();
+    let pixels = values.as_chunks::<3>().0.iter().map(|&p| Rgb::from(p)).collect();
+    Ok(Picture { width: width as usize, height: height as usize, pixels, max: None, recipe: None })
+}

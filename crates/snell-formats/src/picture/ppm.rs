@@ -1,0 +1,89 @@
+//! PPM: `P3` as text and `P6` as bytes, the course's format.
+
+use super::{Picture, checked_pixels};
+use snell::film::transfer::Encoding;
+use snell::film::{Film, Rgb};
+use std::io::Write;
+
+pub(super) fn write(out: &mut dyn Write, film: &Film, encoding: Encoding, binary: bool) -> std::io::Result<()> {
+    let (magic, width, height) = (if binary { "P6" } else { "P3" }, film.width(), film.height());
+    writeln!(out, "{magic}\n{width} {height} 255")?;
+    for row in film.pixels.chunks_exact(width) {
+        if binary {
+            for pixel in row {
+                out.write_all(&pixel.to_array().map(|c| encoding.encode(c, 255) as u8))?;
+            }
+        } else {
+            let words: Vec<String> =
+                row.iter().flat_map(|p| p.to_array()).map(|c| encoding.encode(c, 255).to_string()).collect();
+            writeln!(out, "{}", words.join(" "))?;
+        }
+    }
+    Ok(())
+}
+
+pub(super) fn read(bytes: &[u8]) -> Result<Picture, String> {
+    let mut header = Header { bytes, at: 2 };
+    let binary = match bytes.get(..2) {
+        Some(b"P3") => false,
+        Some(b"P6") => true,
+        _ => return Err("it starts neither with P3 nor with P6".to_owned()),
+    };
+    let (width, height) = (header.number("the width")?, header.number("the height")?);
+    let max = header.number("the largest value")?;
+    if !(1..=65535).contains(&max) {
+        return Err(format!("the largest value {max} is not between 1 and 65535"));
+    }
+    let count = checked_pixels(width, height)? * 3;
+    let mut samples = Vec::new();
+    if binary {
+        let size = if max > 255 { 2 } else { 1 };
+        // One white space ends the header.
+        let data = bytes.get(header.at + 1..).unwrap_or_default();
+        if data.len() < count * size {
+            return Err(format!("it is cut off: {} of {} bytes of pixels are there", data.len(), count * size));
+        }
+        let big_endian = |b: &[u8]| b.iter().fold(0, |value, &byte| value * 256 + u32::from(byte));
+        samples.extend(data[..count * size].chunks_exact(size).map(|b| f64::from(big_endian(b))));
+    } else {
+        for i in 0..count {
+            let value = header.number("a value").map_err(|e| format!("{e}, after {i} of {count} values"))?;
+            samples.push(value as f64);
+        }
+    }
+    if let Some(value) = samples.iter().find(|&&v| v > max as f64) {
+        return Err(format!("a value {value} is above the largest, {max}"));
+    }
+    let pixels = samples.as_chunks::<3>().0.iter().map(|&p| Rgb::from(p)).collect();
+    Ok(Picture { width: width as usize, height: height as usize, pixels, max: Some(max as u32), recipe: None })
+}
+
+struct Header<'a> {
+    bytes: &'a [u8],
+    at: usize,
+}
+
+impl Header<'_> {
+    /// The next whole number, after white space and comments.
+    fn number(&mut self, what: &str) -> Result<u64, String> {
+        while let Some(byte) = self.bytes.get(self.at) {
+            match byte {
+                b'#' => {
+                    self.at +=
+                        self.bytes[self.at..].iter().position(|&b| b == b'\n').unwrap_or(self.bytes.len() - self.at);
+                }
+                b if b.is_ascii_whitespace() => self.at += 1,
+                _ => break,
+            }
+        }
+        let start = self.at;
+        while self.bytes.get(self.at).is_some_and(u8::is_ascii_digit) {
+            self.at += 1;
+        }
+        let digits = std::str::from_utf8(&self.bytes[start..self.at]).unwrap_or_default();
+        digits.parse().map_err(|_| match self.bytes.get(self.at) {
+            None => format!("it ends where {what} should be"),
+            Some(&byte) => format!("expected {what}, read `{}` at byte {}", char::from(byte), self.at),
+        })
+    }
+}

@@ -1,0 +1,106 @@
+use super::*;
+use proptest::prelude::*;
+use snell::film::Crop;
+use snell::scene::{Rounding, Transfer};
+
+const LINEAR: Encoding = Encoding { transfer: Transfer::Linear, rounding: Rounding::Round };
+
+/// 3 x 2 pixels, the last one unfinished if asked.
+fn film(unfinished: bool) -> Film {
+    let mut film = Film::new([8, 8], Crop { x: 2, y: 1, width: 3, height: 2 }).unwrap();
+    for (i, pixel) in film.pixels.iter_mut().enumerate() {
+        *pixel = Rgb::new(i as f64 / 5.0, 0.25, 1.5);
+    }
+    film.finished.fill(true);
+    film.finished[5] = !unfinished;
+    film
+}
+
+#[test]
+fn every_format_comes_back() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, format, max) in [
+        ("a.png", Format::Png { sixteen_bit: false }, Some(255)),
+        ("b.png", Format::Png { sixteen_bit: true }, Some(65535)),
+        ("a.ppm", Format::Ppm { binary: false }, Some(255)),
+        ("b.ppm", Format::Ppm { binary: true }, Some(255)),
+        ("a.exr", Format::Exr, None),
+        ("a.npy", Format::Npy, None),
+    ] {
+        for unfinished in [false, true] {
+            let (path, film) = (folder.path().join(name), film(unfinished));
+            write(&path, format, &film, LINEAR, Some("a recipe, with ü")).unwrap();
+            let picture = read(&path).unwrap();
+            assert_eq!((picture.width, picture.height, picture.max), (3, 2, max), "{name}");
+            let keeps_recipe = matches!(format, Format::Png { .. } | Format::Exr);
+            assert_eq!(picture.recipe.as_deref(), keeps_recipe.then_some("a recipe, with ü"), "{name}");
+            for (i, (read, written)) in picture.pixels.iter().zip(&film.pixels).enumerate() {
+                if unfinished && i == 5 {
+                    continue;
+                }
+                for (read, written) in read.to_array().into_iter().zip(written.to_array()) {
+                    let expected = match (format, max) {
+                        (_, Some(max)) => f64::from(LINEAR.encode(written, max as u16)),
+                        (Format::Exr, _) => f64::from(written as f32),
+                        _ => written,
+                    };
+                    assert_eq!(read, expected, "{name}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn hostile_pictures_are_refused_in_words() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, bytes, message) in [
+        ("a.ppm", &b"P3 2 2 255 1 2 3"[..], "after 3 of 12 values"),
+        ("a.ppm", b"P6 2 2 255 1", "cut off: 1 of 12"),
+        ("a.ppm", b"P3 100000 100000 255", "too many"),
+        ("a.ppm", b"P3 0 1 255", "no size"),
+        ("a.ppm", b"P3 1 1 255 1 2 300", "above the largest"),
+        ("a.ppm", b"P5 1 1 255", "neither"),
+        ("a.ppm", b"P3 # only a comment", "ends where the width"),
+        ("a.png", b"\x89PNG\r\n\x1a\n", ""),
+        ("a.npy", b"\x93NUMPY\x01\x00\xff\xff{", "header is cut off"),
+        (
+            "a.npy",
+            b"\x93NUMPY\x01\x00\x4a\x00{'descr': '<f8', 'fortran_order': False, 'shape': (99999, 999999, 3), }   ",
+            "",
+        ),
+        ("a.exr", b"\x76\x2f\x31\x01", ""),
+    ] {
+        let path = folder.path().join(name);
+        std::fs::write(&path, bytes).unwrap();
+        let report = read(&path).unwrap_err();
+        assert!(report.message.contains(message), "{report}");
+    }
+    assert!(Format::of(Path::new("x.pgn")).unwrap_err().help.unwrap().contains(".png?"));
+}
+
+proptest! {
+    /// A picture with some bytes changed or missing is read or refused, but breaks nothing.
+    #[test]
+    fn damaged_pictures_break_nothing(which in 0usize..4, at in 0usize..600, byte: u8, keep in 0usize..700) {
+        let format = [Format::Png { sixteen_bit: false }, Format::Ppm { binary: false }, Format::Exr, Format::Npy][which];
+        let mut bytes = Vec::new();
+        let film = film(false);
+        match format {
+            Format::Png { .. } => png::write(&mut bytes, &film, LINEAR, false, Some("r")).unwrap(),
+            Format::Ppm { .. } => ppm::write(&mut bytes, &film, LINEAR, false).unwrap(),
+            Format::Exr => exr::write(&mut bytes, &film, Some("r")).unwrap(),
+            Format::Npy => npy::write(&mut bytes, &film).unwrap(),
+        }
+        if let Some(b) = bytes.get_mut(at) {
+            *b = byte;
+        }
+        bytes.truncate(keep);
+        let _ = match format {
+            Format::Png { .. } => png::read(&bytes),
+            Format::Ppm { .. } => ppm::read(&bytes),
+            Format::Exr => exr::read(&bytes),
+            Format::Npy => npy::read(&bytes),
+        };
+    }
+}

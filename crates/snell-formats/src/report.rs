@@ -1,0 +1,132 @@
+//! Errors and warnings with a place in a file.
+
+use miette::{Diagnostic, LabeledSpan, Severity, SourceCode};
+use std::fmt;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// A text and where it comes from.
+#[derive(Clone, Debug)]
+pub struct Source {
+    /// File name, for messages.
+    pub name: Arc<str>,
+    /// The whole text.
+    pub text: Arc<str>,
+}
+
+impl Source {
+    /// A text with a name.
+    pub fn new(name: impl Into<Arc<str>>, text: impl Into<Arc<str>>) -> Self {
+        Self { name: name.into(), text: text.into() }
+    }
+
+    /// Line and column of a byte, both from 1; columns count characters.
+    pub fn line_column(&self, offset: usize) -> (usize, usize) {
+        let offset = (0..=offset.min(self.text.len())).rev().find(|&i| self.text.is_char_boundary(i)).unwrap_or(0);
+        let before = &self.text[..offset];
+        let start = before.rfind('\n').map_or(0, |i| i + 1);
+        (before.matches('\n').count() + 1, before[start..].chars().count() + 1)
+    }
+}
+
+/// One thing that is wrong, or odd, with a file.
+#[derive(Clone, Debug)]
+pub struct Report {
+    /// What was read and what was expected.
+    pub message: String,
+    /// What to do about it.
+    pub help: Option<String>,
+    /// Where.
+    pub place: Option<(Source, Range<usize>)>,
+    /// For a warning its code and name, like `W001 invisible-sphere`; `None` for an error.
+    pub warning: Option<&'static str>,
+    miette_source: Option<miette::NamedSource<Arc<str>>>,
+}
+
+impl Report {
+    /// An error without a place.
+    pub fn error(message: impl Into<String>) -> Self {
+        Self { message: message.into(), help: None, place: None, warning: None, miette_source: None }
+    }
+
+    /// A warning without a place.
+    pub fn warning(code: snell::scene::WarningCode, message: impl Into<String>) -> Self {
+        Self { warning: Some(code.code()), ..Self::error(message) }
+    }
+
+    /// The same, at a range of bytes in a text.
+    #[must_use]
+    pub fn at(mut self, source: &Source, range: Range<usize>) -> Self {
+        let end = source.text.len();
+        let range = range.start.min(end)..range.end.clamp(range.start.min(end), end);
+        self.miette_source = Some(miette::NamedSource::new(&*source.name, source.text.clone()));
+        self.place = Some((source.clone(), range));
+        self
+    }
+
+    /// The same, with advice.
+    #[must_use]
+    pub fn help(mut self, help: impl Into<String>) -> Self {
+        self.help = Some(help.into());
+        self
+    }
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+impl std::error::Error for Report {}
+
+impl Diagnostic for Report {
+    fn code<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
+        self.warning.map(|code| Box::new(code) as Box<dyn fmt::Display>)
+    }
+    fn severity(&self) -> Option<Severity> {
+        Some(if self.warning.is_some() { Severity::Warning } else { Severity::Error })
+    }
+    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
+        self.help.as_ref().map(|help| Box::new(help) as Box<dyn fmt::Display>)
+    }
+    fn source_code(&self) -> Option<&dyn SourceCode> {
+        self.miette_source.as_ref().map(|source| source as &dyn SourceCode)
+    }
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        let (_, range) = self.place.as_ref()?;
+        Some(Box::new(std::iter::once(LabeledSpan::underline(range.clone()))))
+    }
+}
+
+/// The known word that is nearest to a misspelt one, if any is near.
+pub fn nearest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    known
+        .into_iter()
+        .map(|candidate| {
+            (strsim::normalized_damerau_levenshtein(&word.to_lowercase(), &candidate.to_lowercase()), candidate)
+        })
+        .filter(|(score, _)| *score > 0.6)
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|(_, candidate)| candidate)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_and_columns_count_from_one_and_in_characters() {
+        let source = Source::new("x", "ab\nüx\n");
+        assert_eq!(source.line_column(0), (1, 1));
+        assert_eq!(source.line_column(5), (2, 2), "ü has two bytes and one column");
+        assert_eq!(source.line_column(4), (2, 1), "inside ü is ü");
+        assert_eq!(source.line_column(99), (3, 1));
+    }
+
+    #[test]
+    fn the_nearest_word_is_near() {
+        assert_eq!(nearest("radus", ["center", "radius"]), Some("radius"));
+        assert_eq!(nearest("zzz", ["center", "radius"]), None);
+    }
+}

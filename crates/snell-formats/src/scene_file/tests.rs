@@ -1,0 +1,193 @@
+use super::*;
+use crate::builtin;
+
+fn source(text: &str) -> Source {
+    Source::new("scene.toml", text)
+}
+
+const SMALL: &str = r#"snell = 1
+[render]
+integrator = "lecture"
+size = [4, 4]
+max_depth = 2
+[camera]
+eye = [0, 0, 10]
+look_at = [0, 0, 0]
+up = [0, 1, 0]
+bounds = [-2, 2, -2, 2]
+near = -5
+[[light]]
+name = "lamp"
+position = [0, 9, 0]
+color = 0.5
+[material.glass]
+kd = [0.1, 0.2, 0.3]
+[[sphere]]
+name = "ball"
+center = [0, 0, 0]
+radius = 1
+material = "glass"
+"#;
+
+#[test]
+fn every_builtin_scene_survives_both_syntaxes_to_the_bit() {
+    for (name, text) in builtin::SCENES {
+        let scene = parse(&Source::new(*name, *text), Syntax::Toml).unwrap();
+        for syntax in [Syntax::Toml, Syntax::Json] {
+            let again = parse(&source(&to_text(&scene, syntax).unwrap()), syntax).unwrap();
+            assert_eq!(again, scene, "{name} as {syntax:?}");
+        }
+    }
+}
+
+/// The text that a report points at.
+fn pointed(report: &Report) -> &str {
+    let (source, range) = report.place.as_ref().unwrap();
+    &source.text[range.clone()]
+}
+
+#[test]
+fn errors_point_at_what_was_read_and_say_what_to_do() {
+    for (from, to, at, message, help) in [
+        ("radius = 1", "radus = 1", "radus", "unknown key `radus`", "did you mean `radius`?"),
+        ("\"lecture\"", "\"lektüre\"", "\"lektüre\"", "unknown value `lektüre`", "lecture, course2018, course2020"),
+        ("integrator = \"lecture\"\n", "", "[render]", "`integrator` is missing", "which model of light"),
+        ("color = 0.5", "color = [1, 2]", "[1, 2]", "a colour", ""),
+        ("radius = 1", "radius = \"big\"", "\"big\"", "invalid type", ""),
+        ("near = -5", "near = ", "", "", ""),
+    ] {
+        let report = parse(&source(&SMALL.replace(from, to)), Syntax::Toml).unwrap_err();
+        assert!(report.message.contains(message), "{report}");
+        assert!(pointed(&report).starts_with(at), "`{}` should be `{at}`", pointed(&report));
+        assert!(report.help.clone().unwrap_or_default().contains(help), "{report:?}");
+    }
+}
+
+#[test]
+fn json_errors_point_too() {
+    let json = to_text(&parse(&source(SMALL), Syntax::Toml).unwrap(), Syntax::Json).unwrap();
+    let report = parse(&source(&json.replace("\"radius\"", "\"radus\"")), Syntax::Json).unwrap_err();
+    assert!(report.message.contains("radus") && pointed(&report).contains("radus"), "{report:?}");
+    let report = parse(&source(&json[..json.len() / 2]), Syntax::Json).unwrap_err();
+    assert!(report.message.contains("EOF"), "{report}");
+}
+
+#[test]
+fn problems_are_found_in_both_texts() {
+    let bad = SMALL.replace("radius = 1", "radius = -1.5").replace("bounds = [-2, 2, -2, 2]", "bounds = [2, 2, 0, 1]");
+    let scene = parse(&source(&bad), Syntax::Toml).unwrap();
+    let problems = snell::scene::validate(&scene).unwrap_err();
+    assert_eq!(problems.len(), 2, "{problems:?}");
+    let json = to_text(&scene, Syntax::Json).unwrap();
+    for (text, syntax) in [(bad.as_str(), Syntax::Toml), (json.as_str(), Syntax::Json)] {
+        let texts: Vec<_> = problems
+            .iter()
+            .map(|p| pointed(&report(p, &source(text), syntax)).replace(char::is_whitespace, ""))
+            .collect();
+        assert!(texts[0].starts_with("[2") && texts[1] == "-1.5", "{texts:?}");
+    }
+}
+
+#[test]
+fn set_changes_one_value_and_nothing_else() {
+    let before = parse(&source(SMALL), Syntax::Toml).unwrap();
+    let json = to_text(&before, Syntax::Json).unwrap();
+    for (text, syntax) in [(SMALL, Syntax::Toml), (json.as_str(), Syntax::Json)] {
+        let change = |change: &str| {
+            let text = set(&source(text), syntax, change).unwrap();
+            parse(&text, Syntax::Toml).unwrap()
+        };
+        let mut expected = before.clone();
+        expected.materials["glass"].eta = 2.42;
+        assert_eq!(change("material.glass.eta=2.42"), expected);
+        let mut expected = before.clone();
+        expected.spheres[0].radius = 3.0;
+        assert_eq!(change("sphere.ball.radius = 3"), expected);
+        assert_eq!(change("sphere.1.radius=3.0"), expected);
+        let mut expected = before.clone();
+        expected.camera.eye = [1.0, 2.0, 3.0];
+        assert_eq!(change("camera.eye=[1, 2, 3]"), expected);
+        let mut expected = before.clone();
+        expected.render.shadows = snell::scene::Shadows::Off;
+        assert_eq!(change("render.shadows=off"), expected);
+        let mut expected = before.clone();
+        expected.ambient = snell::film::Rgb::gray(0.5);
+        assert_eq!(change("ambient=0.5"), expected);
+    }
+}
+
+#[test]
+fn set_refuses_what_would_be_ignored() {
+    for (change, message) in [
+        ("material.glas.eta=2", "no `material.glas`"),
+        ("sphere.cube.radius=2", "no `sphere.cube`"),
+        ("sphere.0.radius=2", "no `sphere.0`"),
+        ("sphere.radius=2", "is a list"),
+        ("camera.eye.x=2", "no keys"),
+        ("material.glass.eta", "no `=`"),
+        ("..=1", "no key"),
+    ] {
+        let report = set(&source(SMALL), Syntax::Toml, change).unwrap_err();
+        assert!(report.message.contains(message), "{change}: {report}");
+    }
+    // A misspelt last key is inserted, and then refused like in any file.
+    let text = set(&source(SMALL), Syntax::Toml, "material.glass.etta=2").unwrap();
+    assert!(parse(&text, Syntax::Toml).unwrap_err().message.contains("`etta`"));
+}
+
+#[test]
+fn the_published_schema_is_this_one() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/scene.schema.json");
+    let published = std::fs::read_to_string(path).unwrap_or_default();
+    assert!(published == schema(), "docs/scene.schema.json is out of date: `snell schema > docs/scene.schema.json`");
+}
+
+mod properties {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Whatever a text says, reading it ends with a scene or a report whose place lies within the text.
+        #[test]
+        fn no_text_breaks_the_reader(at in 0..SMALL.len(), cut in 0usize..20, insert in "\\PC{0,8}") {
+            let end = (at + cut).min(SMALL.len());
+            let text = format!("{}{insert}{}", &SMALL[..at], &SMALL[end..]);
+            for syntax in [Syntax::Toml, Syntax::Json] {
+                match parse(&source(&text), syntax) {
+                    Ok(scene) => {
+                        if let Err(problems) = snell::scene::validate(&scene) {
+                            for p in problems {
+                                let _ = report(&p, &source(&text), syntax);
+                            }
+                        }
+                    }
+                    Err(report) => {
+                        let (source, range) = report.place.clone().unwrap();
+                        prop_assert!(source.text.get(range).is_some());
+                    }
+                }
+            }
+        }
+
+        #[test]
+        fn no_change_breaks_set(change in "[a-z0-9.=\\[\\] ]{0,24}") {
+            let _ = set(&source(SMALL), Syntax::Toml, &change);
+        }
+    }
+}
+
+#[test]
+fn a_scene_is_written_for_people() {
+    let text = to_text(&parse(&source(SMALL), Syntax::Toml).unwrap(), Syntax::Toml).unwrap();
+    for line in
+        ["[camera]", "[[light]]", "[material.glass]", "[[sphere]]", "[render]", "eye = [0.0, 0.0, 10.0]", "color = 0.5"]
+    {
+        assert!(text.lines().any(|l| l == line), "`{line}` is missing in\n{text}");
+    }
+    let mesh = SMALL.to_owned()
+        + "[[mesh]]\nfile = 'a.obj'\ntransform = [{ scale = [1, 2, 3] }, { rotate = { axis = [1, 0, 0], degrees = 9 } }]\n";
+    let scene = parse(&source(&mesh), Syntax::Toml).unwrap();
+    let text = to_text(&scene, Syntax::Toml).unwrap();
+    assert!(text.lines().any(|l| l.starts_with("transform = [{ scale = [1.0, 2.0, 3.0] }, { rotate")), "{text}");
+    assert_eq!(parse(&source(&text), Syntax::Toml).unwrap(), scene);
+}

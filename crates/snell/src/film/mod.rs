@@ -1,0 +1,108 @@
+//! Pictures: colours, the film that a render fills, and the curve to 8 and 16 bit.
+
+mod color;
+pub mod transfer;
+
+pub use color::Rgb;
+
+use std::fmt;
+
+/// A rectangle of pixels: left and top edge, width and height.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub struct Crop {
+    /// First column.
+    pub x: u32,
+    /// First row, 0 on top.
+    pub y: u32,
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+}
+
+/// The picture as it is computed: linear colour, three `f64` per pixel, row 0 on top.
+#[derive(Clone, PartialEq)]
+pub struct Film {
+    /// Size of the whole picture, width and height in pixels.
+    pub full_size: [u32; 2],
+    /// The part of it that this film holds.
+    pub crop: Crop,
+    /// Radiance, `crop.width·crop.height` pixels, row by row.
+    pub pixels: Vec<Rgb>,
+    /// Has this pixel been computed? Same order as `pixels`.
+    pub finished: Vec<bool>,
+}
+
+/// The film does not fit into memory.
+#[derive(Clone, Copy, Debug, thiserror::Error)]
+#[error("a film of {width} x {height} pixels needs {bytes} bytes of memory, and they are not to be had")]
+pub struct FilmTooLarge {
+    /// Columns asked for.
+    pub width: u32,
+    /// Rows asked for.
+    pub height: u32,
+    /// Bytes asked for.
+    pub bytes: u64,
+}
+
+/// Bytes that a film needs for each pixel.
+pub const BYTES_PER_PIXEL: u64 = size_of::<Rgb>() as u64 + 1;
+
+impl Film {
+    /// A black, unfinished film.
+    ///
+    /// # Errors
+    /// When the memory cannot be had.
+    pub fn new(full_size: [u32; 2], crop: Crop) -> Result<Self, FilmTooLarge> {
+        let Crop { width, height, .. } = crop;
+        let bytes = u64::from(width).saturating_mul(u64::from(height)).saturating_mul(BYTES_PER_PIXEL);
+        let too_large = FilmTooLarge { width, height, bytes };
+        let count = usize::try_from(u64::from(width) * u64::from(height)).map_err(|_| too_large)?;
+        let (mut pixels, mut finished) = (Vec::new(), Vec::new());
+        pixels.try_reserve_exact(count).map_err(|_| too_large)?;
+        finished.try_reserve_exact(count).map_err(|_| too_large)?;
+        pixels.resize(count, Rgb::black());
+        finished.resize(count, false);
+        Ok(Self { full_size, crop, pixels, finished })
+    }
+
+    /// Width of the part that this film holds, in pixels.
+    pub fn width(&self) -> usize {
+        self.crop.width as usize
+    }
+
+    /// Height of the part that this film holds, in pixels.
+    pub fn height(&self) -> usize {
+        self.crop.height as usize
+    }
+
+    /// Is every pixel computed?
+    pub fn is_finished(&self) -> bool {
+        self.finished.iter().all(|&yes| yes)
+    }
+
+    /// The numbers of all pixels as little-endian bytes, NaN in one canonical form: equal pictures, equal bytes, on every
+    /// machine. For hashing.
+    pub fn bytes(&self) -> impl Iterator<Item = [u8; 8]> + '_ {
+        let canonical = |v: f64| if v.is_nan() { f64::NAN } else { v };
+        self.pixels.iter().flat_map(|p| [p.r, p.g, p.b]).map(move |v| canonical(v).to_le_bytes())
+    }
+}
+
+impl fmt::Debug for Film {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Film").field("full_size", &self.full_size).field("crop", &self.crop).finish_non_exhaustive()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_impossible_film_is_an_error_and_not_an_abort() {
+        let crop = Crop { x: 0, y: 0, width: u32::MAX, height: u32::MAX };
+        let error = Film::new([u32::MAX, u32::MAX], crop).unwrap_err().to_string();
+        assert!(error.contains("4294967295 x 4294967295"), "{error}");
+    }
+}

@@ -1,0 +1,63 @@
+//! From linear light to the integers of a picture file.
+
+use crate::scene::{Rounding, Transfer};
+
+/// Turns linear radiance into integers from 0 to `max` (255 or 65535), clipped. NaN becomes 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Encoding {
+    /// The curve.
+    pub transfer: Transfer,
+    /// What happens to the fraction.
+    pub rounding: Rounding,
+}
+
+impl Encoding {
+    /// One component.
+    pub fn encode(self, linear: f64, max: u16) -> u16 {
+        let value = match self.transfer {
+            Transfer::Linear => linear,
+            Transfer::Srgb => srgb(linear),
+        };
+        let scaled = f64::from(max) * value;
+        let whole = match self.rounding {
+            Rounding::Truncate => scaled,
+            Rounding::Round => (scaled + 0.5).floor(),
+        };
+        // The cast truncates, turns NaN into 0 and clips.
+        (whole.clamp(0.0, f64::from(max))) as u16
+    }
+}
+
+/// The curve of IEC 61966-2-1:1999, from linear light to the encoded value, both 0 to 1.
+pub fn srgb(linear: f64) -> f64 {
+    if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * libm::pow(linear, 1.0 / 2.4) - 0.055 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn linear(value: f64, rounding: Rounding) -> u16 {
+        Encoding { transfer: Transfer::Linear, rounding }.encode(value, 255)
+    }
+
+    #[test]
+    fn clips_rounds_and_truncates() {
+        for (value, rounded, truncated) in
+            [(-1.0, 0, 0), (0.0, 0, 0), (0.5, 128, 127), (0.999, 255, 254), (1.0, 255, 255), (7.0, 255, 255)]
+        {
+            assert_eq!(linear(value, Rounding::Round), rounded, "{value}");
+            assert_eq!(linear(value, Rounding::Truncate), truncated, "{value}");
+        }
+        assert_eq!(linear(f64::NAN, Rounding::Round), 0);
+        assert_eq!(linear(f64::INFINITY, Rounding::Truncate), 255);
+    }
+
+    #[test]
+    fn srgb_has_the_published_values() {
+        // IEC 61966-2-1: middle gray 0.2140 is 127.5/255 to four digits; the two branches meet.
+        assert!((srgb(0.214_041) - 0.5).abs() < 1e-5);
+        assert!((srgb(0.003_130_8) - srgb(0.003_130_81)).abs() < 1e-6);
+        assert!((srgb(1.0) - 1.0).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,112 @@
+//! Axis-aligned boxes: `f64` for measuring a scene, `f32` rounded outward for the tree.
+
+use super::{RayFrame, Vec3};
+use crate::lanes::Lanes;
+
+/// An axis-aligned box in `f64`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    /// Smallest coordinates.
+    pub min: Vec3,
+    /// Largest coordinates.
+    pub max: Vec3,
+}
+
+impl Bounds {
+    /// The box that holds nothing.
+    pub const EMPTY: Self = Self {
+        min: Vec3::new(f64::INFINITY, f64::INFINITY, f64::INFINITY),
+        max: Vec3::new(f64::NEG_INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY),
+    };
+
+    /// The box of some points.
+    pub fn of(points: impl IntoIterator<Item = Vec3>) -> Self {
+        points.into_iter().fold(Self::EMPTY, |b, p| b.union(Self { min: p, max: p }))
+    }
+
+    /// The box of two boxes.
+    pub fn union(self, other: Self) -> Self {
+        let (a, b) = (self, other);
+        Self {
+            min: Vec3::new(a.min.x.min(b.min.x), a.min.y.min(b.min.y), a.min.z.min(b.min.z)),
+            max: Vec3::new(a.max.x.max(b.max.x), a.max.y.max(b.max.y), a.max.z.max(b.max.z)),
+        }
+    }
+
+    /// Length of the diagonal; 0 for the empty box.
+    pub fn diagonal(&self) -> f64 {
+        if self.min.x > self.max.x { 0.0 } else { (self.max - self.min).length() }
+    }
+}
+
+/// A box of the tree: `f32`, never smaller than what it holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OuterBox {
+    /// Smallest coordinates, rounded down.
+    pub min: [f32; 3],
+    /// Largest coordinates, rounded up.
+    pub max: [f32; 3],
+}
+
+impl OuterBox {
+    /// Grows a box by `margin` on every side and rounds it outward.
+    pub fn around(bounds: &Bounds, margin: f64) -> Self {
+        let b = bounds;
+        Self {
+            min: [b.min.x, b.min.y, b.min.z].map(|v| round_down(v - margin)),
+            max: [b.max.x, b.max.y, b.max.z].map(|v| round_up(v + margin)),
+        }
+    }
+
+    /// Distance at which each ray enters the box, and whether it meets the box between `t_min` and `t_max`.
+    ///
+    /// The slab test of Kay and Kajiya (1986) in `f64` on the widened corners.
+    #[inline(always)]
+    pub fn enter<L: Lanes>(&self, origin: Vec3<L>, frame: &RayFrame<L>, t_min: L, t_max: L) -> (L, L::Mask) {
+        let slab = |low: f32, high: f32, origin: L, inv: L| {
+            let (a, b) = ((L::splat(f64::from(low)) - origin) * inv, (L::splat(f64::from(high)) - origin) * inv);
+            (a.min(b), a.max(b))
+        };
+        let (near_x, far_x) = slab(self.min[0], self.max[0], origin.x, frame.inv_dir.x);
+        let (near_y, far_y) = slab(self.min[1], self.max[1], origin.y, frame.inv_dir.y);
+        let (near_z, far_z) = slab(self.min[2], self.max[2], origin.z, frame.inv_dir.z);
+        let near = near_x.max(near_y).max(near_z);
+        let far = far_x.min(far_y).min(far_z);
+        (near, near.max(t_min).le(far.min(t_max)))
+    }
+}
+
+fn round_down(value: f64) -> f32 {
+    let near = value as f32;
+    if f64::from(near) > value { near.next_down() } else { near }
+}
+
+fn round_up(value: f64) -> f32 {
+    -round_down(-value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn rounding_goes_outward_and_not_far(value in -1e15..1e15f64) {
+            let (down, up) = (f64::from(round_down(value)), f64::from(round_up(value)));
+            prop_assert!(down <= value && value <= up);
+            prop_assert!(up - down <= value.abs() * 1.3e-7 + 1e-40); // one unit in the last place of f32
+        }
+    }
+
+    #[test]
+    fn a_ray_in_the_plane_of_a_face_enters() {
+        let corners = [Vec3::default(), Vec3::new(1.0, 0.0, 1.0)];
+        let flat = OuterBox::around(&Bounds::of(corners), 1e-14);
+        let dir = Vec3::new(1.0, 0.0, 0.0);
+        let frame = RayFrame::new(dir);
+        let inside = Vec3::new(-1.0, 0.0, 0.5);
+        assert!(flat.enter(inside, &frame, 0.0, 10.0).1);
+        assert!(!flat.enter(Vec3::new(-1.0, 0.1, 0.5), &frame, 0.0, 10.0).1);
+    }
+}

@@ -1,0 +1,88 @@
+//! Triangle meshes as data, and their smooth normals.
+
+use super::{Affine, Vec3, triangle};
+use crate::lanes::elementary::sin_cos_degrees;
+
+/// Triangles that share vertices.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TriangleMesh {
+    /// Positions in scene units.
+    pub vertices: Vec<Vec3>,
+    /// Three numbers of vertices for each face, counter-clockwise seen from outside.
+    pub faces: Vec<[u32; 3]>,
+    /// For each face its slot in [`slots`](Self::slots); empty: no face names a material.
+    pub face_slots: Vec<u32>,
+    /// Names of the materials that the file's faces ask for.
+    pub slots: Vec<String>,
+}
+
+/// A vertex that more faces share is not smoothed: the cost grows with the square of this number.
+pub const MAX_SMOOTHED_VALENCE: usize = 512;
+
+impl TriangleMesh {
+    /// The three corners of a face.
+    pub fn corners(&self, face: usize) -> [Vec3; 3] {
+        self.faces[face].map(|v| self.vertices[v as usize])
+    }
+
+    /// The same mesh under a map.
+    #[must_use]
+    pub fn transformed(&self, map: &Affine) -> Self {
+        Self { vertices: self.vertices.iter().map(|&v| map.apply(v)).collect(), ..self.clone() }
+    }
+
+    /// Normals of each face's corners: the mean of the unit normals of those faces at the same vertex that lie within
+    /// `cutoff` degrees of this face, not yet of unit length.
+    pub fn smooth_normals(&self, cutoff: f64) -> Vec<[Vec3; 3]> {
+        let flat: Vec<Option<Vec3>> = (0..self.faces.len()).map(|f| triangle::normal(self.corners(f))).collect();
+        let mut around: Vec<Vec<u32>> = vec![Vec::new(); self.vertices.len()];
+        for (face, corners) in self.faces.iter().enumerate() {
+            for &vertex in corners {
+                around[vertex as usize].push(face as u32);
+            }
+        }
+        let least = if cutoff >= 180.0 { -2.0 } else { sin_cos_degrees(cutoff).1 };
+        let at = |face: usize, vertex: u32| {
+            let Some(own) = flat[face] else { return Vec3::default() };
+            let neighbours = &around[vertex as usize];
+            if neighbours.len() > MAX_SMOOTHED_VALENCE {
+                return own;
+            }
+            let near = neighbours.iter().filter_map(|&f| flat[f as usize]).filter(|n| n.dot(own) >= least);
+            let sum = near.fold(Vec3::default(), |sum, n| sum + n);
+            if sum == Vec3::default() { own } else { sum }
+        };
+        (0..self.faces.len()).map(|face| self.faces[face].map(|vertex| at(face, vertex))).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two faces of a roof that meet at 90 degrees along the x axis.
+    fn roof() -> TriangleMesh {
+        TriangleMesh {
+            vertices: [[0., 0., 0.], [1., 0., 0.], [0., 1., -1.], [0., -1., -1.]].map(Vec3::from).to_vec(),
+            faces: vec![[0, 1, 2], [1, 0, 3]],
+            ..TriangleMesh::default()
+        }
+    }
+
+    #[test]
+    fn faces_beyond_the_cutoff_do_not_bend_the_normal() {
+        let (sharp, smooth) = (roof().smooth_normals(80.0), roof().smooth_normals(100.0));
+        let half = 0.5f64.sqrt();
+        assert!((sharp[0][0].unit() - Vec3::new(0.0, half, half)).length() < 1e-15);
+        assert!((smooth[0][0].unit() - Vec3::new(0.0, 0.0, 1.0)).length() < 1e-15, "the ridge points up");
+        assert!((smooth[0][2].unit() - Vec3::new(0.0, half, half)).length() < 1e-15, "the eaves stay");
+    }
+
+    #[test]
+    fn a_face_without_area_has_no_normal_and_spoils_none() {
+        let mut mesh = roof();
+        mesh.faces.push([0, 0, 1]);
+        assert_eq!(mesh.smooth_normals(100.0)[2], [Vec3::default(); 3]);
+        assert_eq!(mesh.smooth_normals(100.0)[0], roof().smooth_normals(100.0)[0]);
+    }
+}

@@ -1,0 +1,16 @@
+//! Vectors, rays, and what a ray can hit. Pure geometry: no materials, no light.
+
+pub mod bounds;
+pub mod bvh;
+pub mod mesh;
+pub mod ray;
+pub mod sphere;
+pub mod transform;
+pub mod triangle;
+pub mod vec3;
+
+pub use bounds::Bounds;
+pub use mesh::TriangleMesh;
+pub use ray::{Ray, RayFrame};
+pub use transform::Affine;
+pub use vec3::Vec3;

@@ -1,0 +1,95 @@
+//! Affine maps: rotate, scale, move, one after the other.
+
+use super::Vec3;
+use crate::lanes::elementary::sin_cos_degrees;
+
+/// `p ↦ M·p + t`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Affine {
+    rows: [Vec3; 3],
+    offset: Vec3,
+}
+
+impl Affine {
+    /// The map that changes nothing.
+    pub const IDENTITY: Self = Self {
+        rows: [Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, 1.0, 0.0), Vec3::new(0.0, 0.0, 1.0)],
+        offset: Vec3::new(0.0, 0.0, 0.0),
+    };
+
+    /// Rotation about an axis through the origin, right-handed, in degrees (Rodrigues' formula
+    /// `R = cos θ·I + sin θ·[k]× + (1 − cos θ)·k kᵀ`). `None` if the axis has no direction.
+    pub fn rotation(axis: Vec3, degrees: f64) -> Option<Self> {
+        let k = axis.unit();
+        if !k.is_finite() {
+            return None;
+        }
+        let (sin, cos) = sin_cos_degrees(degrees);
+        let (s, c) = (k * sin, k * (1.0 - cos));
+        Some(Self {
+            rows: [
+                Vec3::new(cos + k.x * c.x, k.x * c.y - s.z, k.x * c.z + s.y),
+                Vec3::new(k.y * c.x + s.z, cos + k.y * c.y, k.y * c.z - s.x),
+                Vec3::new(k.z * c.x - s.y, k.z * c.y + s.x, cos + k.z * c.z),
+            ],
+            offset: Vec3::default(),
+        })
+    }
+
+    /// Scaling along the axes.
+    pub fn scaling(factors: Vec3) -> Self {
+        Self {
+            rows: [Vec3::new(factors.x, 0.0, 0.0), Vec3::new(0.0, factors.y, 0.0), Vec3::new(0.0, 0.0, factors.z)],
+            offset: Vec3::default(),
+        }
+    }
+
+    /// Moving by a vector.
+    pub fn translation(offset: Vec3) -> Self {
+        Self { offset, ..Self::IDENTITY }
+    }
+
+    /// This map first, then `next`.
+    pub fn then(self, next: Self) -> Self {
+        let column = |axis: usize| Vec3::new(self.rows[0], self.rows[1], self.rows[2]).map_component(axis);
+        let columns = [column(0), column(1), column(2)];
+        let row = |r: Vec3| Vec3::new(r.dot(columns[0]), r.dot(columns[1]), r.dot(columns[2]));
+        Self { rows: next.rows.map(row), offset: next.apply(self.offset) }
+    }
+
+    /// The image of a point.
+    pub fn apply(&self, p: Vec3) -> Vec3 {
+        Vec3::new(self.rows[0].dot(p), self.rows[1].dot(p), self.rows[2].dot(p)) + self.offset
+    }
+}
+
+impl Vec3<Vec3> {
+    /// One component of each of three rows: a column.
+    fn map_component(self, axis: usize) -> Vec3 {
+        Vec3::new(self.x.component(axis), self.y.component(axis), self.z.component(axis))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rotate_scale_move_in_this_order() {
+        let map = Affine::rotation(Vec3::new(1.0, 0.0, 0.0), 90.0)
+            .unwrap()
+            .then(Affine::scaling(Vec3::new(2.0, 3.0, 4.0)))
+            .then(Affine::translation(Vec3::new(10.0, 0.0, 0.0)));
+        // y turns to z (right-handed about x), then scales by 4, then moves.
+        assert_eq!(map.apply(Vec3::new(0.0, 1.0, 0.0)), Vec3::new(10.0, 0.0, 4.0));
+        assert_eq!(map.apply(Vec3::new(1.0, 0.0, 1.0)), Vec3::new(12.0, -3.0, 0.0));
+        assert_eq!(Affine::rotation(Vec3::default(), 10.0), None);
+    }
+
+    #[test]
+    fn a_third_of_a_turn_about_the_diagonal_permutes_the_axes() {
+        let map = Affine::rotation(Vec3::new(1.0, 1.0, 1.0), 120.0).unwrap();
+        let p = map.apply(Vec3::new(1.0, 2.0, 3.0)) - Vec3::new(3.0, 1.0, 2.0);
+        assert!(p.length() < 3e-15, "a few roundings of numbers up to 3: {p:?}");
+    }
+}

@@ -1,0 +1,4 @@
+//! Optics as pure functions: no scene, no queue, one formula each.
+
+pub mod phong;
+pub mod snell;

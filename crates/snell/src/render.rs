@@ -1,0 +1,202 @@
+//! From a world to a film: tiles, threads, progress, cancellation. The only place with threads.
+
+use crate::film::{Crop, Film, FilmTooLarge, Rgb};
+use crate::lanes::{ArrayLanes, Lanes};
+use crate::trace::{RayTree, Recorder, Settings, Statistics, Tracer};
+use crate::world::World;
+use std::fmt;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+
+/// How many numbers a kernel computes together. The picture does not depend on it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LaneWidth {
+    /// One.
+    #[default]
+    One,
+    /// Four, as plain arrays.
+    Four,
+}
+
+/// How to render; nothing here changes a bit of the picture but `crop`, which cuts it.
+#[derive(Clone, Copy)]
+pub struct Options<'a> {
+    /// Worker threads; 0: as many as the machine has cores.
+    pub threads: usize,
+    /// Edge of a square tile in pixels, at least 1.
+    pub tile_size: u32,
+    /// Lanes of the kernels.
+    pub lanes: LaneWidth,
+    /// Only this part of the picture.
+    pub crop: Option<Crop>,
+    /// Called after every tile, from any thread.
+    pub progress: Option<&'a (dyn Fn(Progress) + Sync)>,
+    /// Set it to stop: what is finished by then comes back.
+    pub cancel: Option<&'a AtomicBool>,
+}
+
+impl Default for Options<'_> {
+    fn default() -> Self {
+        Self { threads: 0, tile_size: 16, lanes: LaneWidth::One, crop: None, progress: None, cancel: None }
+    }
+}
+
+impl fmt::Debug for Options<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { threads, tile_size, lanes, crop, .. } = self;
+        let mut debug = f.debug_struct("Options");
+        debug.field("threads", threads).field("tile_size", tile_size).field("lanes", lanes).field("crop", crop);
+        debug.finish_non_exhaustive()
+    }
+}
+
+/// How far a render has come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Progress {
+    /// Pixels finished.
+    pub pixels: u64,
+    /// Pixels in all.
+    pub total_pixels: u64,
+    /// Rays of all kinds traced for them.
+    pub rays: u64,
+}
+
+/// A picture and what it took.
+#[derive(Clone, Debug)]
+pub struct Rendered {
+    /// The picture; some pixels are unfinished if it was cancelled.
+    pub film: Film,
+    /// What was traced. After a cancellation: for the finished tiles and some of the others.
+    pub statistics: Statistics,
+}
+
+/// Why a render did not start.
+#[derive(Clone, Copy, Debug, thiserror::Error)]
+pub enum RenderError {
+    /// Not enough memory.
+    #[error(transparent)]
+    FilmTooLarge(#[from] FilmTooLarge),
+    /// The crop is empty or reaches beyond the picture.
+    #[error(
+        "the crop {}x{} at ({}, {}) does not lie within the picture of {}x{} pixels",
+        crop.width, crop.height, crop.x, crop.y, size[0], size[1]
+    )]
+    CropOutside {
+        /// What was asked for.
+        crop: Crop,
+        /// The picture.
+        size: [u32; 2],
+    },
+}
+
+/// Renders a picture.
+///
+/// # Errors
+/// When the film does not fit into memory, or the crop not into the picture.
+pub fn render(world: &World, options: &Options<'_>) -> Result<Rendered, RenderError> {
+    let size = world.camera.size;
+    let crop = options.crop.unwrap_or(Crop { x: 0, y: 0, width: size[0], height: size[1] });
+    let fits =
+        |start: u32, length: u32, limit: u32| length > 0 && start.checked_add(length).is_some_and(|e| e <= limit);
+    if !fits(crop.x, crop.width, size[0]) || !fits(crop.y, crop.height, size[1]) {
+        return Err(RenderError::CropOutside { crop, size });
+    }
+    let shared = Shared {
+        world,
+        options,
+        crop,
+        next_tile: AtomicU64::new(0),
+        rays: AtomicU64::new(0),
+        result: Mutex::new(Rendered { film: Film::new(size, crop)?, statistics: Statistics::default() }),
+        pixels: AtomicU64::new(0),
+    };
+    match options.lanes {
+        LaneWidth::One => shared.work::<f64>(),
+        LaneWidth::Four => shared.work::<ArrayLanes<4>>(),
+    }
+    // A poisoned lock means that a worker panicked, which rayon has already passed on.
+    Ok(shared.result.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner))
+}
+
+/// Traces one pixel and writes down every ray. The sum of the tree is the film's value, bit for bit.
+pub fn trace_pixel(world: &World, x: u32, y: u32) -> (Rgb, RayTree) {
+    let mut tracer = Tracer::<f64, _>::new(world, Settings { cancel: None }, Recorder::default());
+    let radiance = tracer.trace(&[(x, y)]).and_then(|p| p.first().copied()).unwrap_or_default();
+    (radiance, tracer.observer.tree)
+}
+
+struct Shared<'a> {
+    world: &'a World,
+    options: &'a Options<'a>,
+    crop: Crop,
+    next_tile: AtomicU64,
+    rays: AtomicU64,
+    pixels: AtomicU64,
+    result: Mutex<Rendered>,
+}
+
+impl Shared<'_> {
+    fn work<L: Lanes>(&self) {
+        if self.options.threads == 1 {
+            self.worker::<L>();
+            return;
+        }
+        // One worker per thread of the pool. Without a pool (WASM has no threads) the caller does the work.
+        match rayon::ThreadPoolBuilder::new().num_threads(self.options.threads).build() {
+            Ok(pool) => {
+                pool.broadcast(|_| self.worker::<L>());
+            }
+            Err(_) => self.worker::<L>(),
+        }
+    }
+
+    fn worker<L: Lanes>(&self) {
+        let cancel = self.options.cancel;
+        let mut tracer = Tracer::<L, ()>::new(self.world, Settings { cancel }, ());
+        let size = u64::from(self.options.tile_size.max(1));
+        let columns = u64::from(self.crop.width).div_ceil(size);
+        let tiles = columns * u64::from(self.crop.height).div_ceil(size);
+        let mut pixels = Vec::new();
+        let mut rays_before = 0;
+        loop {
+            let tile = self.next_tile.fetch_add(1, Ordering::Relaxed);
+            if tile >= tiles || cancel.is_some_and(|c| c.load(Ordering::Relaxed)) {
+                break;
+            }
+            let (left, top) = ((tile % columns) * size, (tile / columns) * size);
+            let right = (left + size).min(u64::from(self.crop.width));
+            let bottom = (top + size).min(u64::from(self.crop.height));
+            pixels.clear();
+            for y in top..bottom {
+                pixels.extend((left..right).map(|x| (self.crop.x + x as u32, self.crop.y + y as u32)));
+            }
+            let Some(radiance) = tracer.trace(&pixels) else { break };
+            self.store(&pixels, radiance);
+            let rays = tracer.statistics.rays.total();
+            self.report(pixels.len() as u64, rays - rays_before);
+            rays_before = rays;
+        }
+        if let Ok(mut result) = self.result.lock() {
+            result.statistics.merge(&tracer.statistics);
+        }
+    }
+
+    fn store(&self, pixels: &[(u32, u32)], radiance: &[Rgb]) {
+        let Ok(mut result) = self.result.lock() else { return };
+        let film = &mut result.film;
+        for (&(x, y), &value) in pixels.iter().zip(radiance) {
+            let index = (y - self.crop.y) as usize * film.width() + (x - self.crop.x) as usize;
+            film.pixels[index] = value;
+            film.finished[index] = true;
+        }
+    }
+
+    fn report(&self, pixels: u64, rays: u64) {
+        let pixels = self.pixels.fetch_add(pixels, Ordering::Relaxed) + pixels;
+        let rays = self.rays.fetch_add(rays, Ordering::Relaxed) + rays;
+        if let Some(progress) = self.options.progress {
+            let total_pixels = u64::from(self.crop.width) * u64::from(self.crop.height);
+            progress(Progress { pixels, total_pixels, rays });
+        }
+    }
+}

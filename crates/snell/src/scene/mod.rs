@@ -1,0 +1,62 @@
+//! The scene as a person writes it: plain data, with the names of the scene files.
+//!
+//! [`Scene`] is what files, Python and the browser describe; [`validate`] finds what is wrong with it and where;
+//! [`World`](crate::world::World) is its compiled form.
+
+mod camera;
+mod light;
+mod material;
+mod render;
+mod shape;
+mod validate;
+mod warning;
+
+pub use camera::Camera;
+pub use light::Light;
+pub use material::Material;
+pub use render::{Integrator, Render, Rounding, Shadows, Transfer};
+pub use shape::{Mesh, Sphere, Transform};
+pub use validate::{LARGEST_NUMBER, MAX_DEPTH, Problem, Step, validate};
+pub use warning::{Warning, WarningCode};
+
+use crate::film::Rgb;
+use indexmap::IndexMap;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// The version of the scene format that this library reads and writes.
+pub const SCHEMA_VERSION: u32 = 1;
+
+/// Everything that a picture depends on.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Scene {
+    /// Version of this format: 1.
+    pub snell: u32,
+    /// Light that comes from everywhere alike.
+    #[serde(default)]
+    pub ambient: Rgb,
+    /// Index of refraction of the space between the objects.
+    #[serde(default = "one")]
+    pub eta_outside: f64,
+    /// How the picture is made.
+    pub render: Render,
+    /// Where it is seen from.
+    pub camera: Camera,
+    /// Where light comes from.
+    #[serde(default, rename = "light", skip_serializing_if = "Vec::is_empty")]
+    pub lights: Vec<Light>,
+    /// What things are made of, by name.
+    #[serde(default, rename = "material", skip_serializing_if = "IndexMap::is_empty")]
+    pub materials: IndexMap<String, Material>,
+    /// Spheres.
+    #[serde(default, rename = "sphere", skip_serializing_if = "Vec::is_empty")]
+    pub spheres: Vec<Sphere>,
+    /// Triangle meshes.
+    #[serde(default, rename = "mesh", skip_serializing_if = "Vec::is_empty")]
+    pub meshes: Vec<Mesh>,
+}
+
+pub(crate) fn one() -> f64 {
+    1.0
+}

@@ -1,0 +1,70 @@
+//! How a picture is made.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// How the picture is made.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Render {
+    /// The model of light. Always written: there is no silent default.
+    pub integrator: Integrator,
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// How many bounces may follow the camera ray.
+    pub max_depth: u32,
+    /// What stands between a surface and a light.
+    #[serde(default)]
+    pub shadows: Shadows,
+    /// The curve to 8 and 16 bit.
+    #[serde(default)]
+    pub transfer: Transfer,
+    /// What happens to the fraction in 8 and 16 bit.
+    #[serde(default)]
+    pub rounding: Rounding,
+}
+
+/// The model of light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Integrator {
+    /// The lecture's recursion, with its compounding attenuation and its one-step way through glass spheres.
+    Lecture,
+    /// The course of 2018, assignments 3 and 4: mirrors only.
+    Course2018,
+    /// The course of 2019 and 2020: mirrors, and glass spheres of weight `1 − kr`.
+    Course2020,
+}
+
+/// What stands between a surface and a light.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Shadows {
+    /// Nothing: every light reaches every surface that faces it.
+    Off,
+    /// Anything at all blocks a light, transparent or not.
+    #[default]
+    Opaque,
+}
+
+/// The curve from linear light to 8 and 16 bit.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Transfer {
+    /// None: the number is the brightness, as in the lecture and the course.
+    Linear,
+    /// The curve of IEC 61966-2-1, which screens expect.
+    #[default]
+    Srgb,
+}
+
+/// What happens to the fraction in 8 and 16 bit.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Rounding {
+    /// To the nearest.
+    #[default]
+    Round,
+    /// Cut off, as the course of 2018 does: `int(255·c)`.
+    Truncate,
+}

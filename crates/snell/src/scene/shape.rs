@@ -1,0 +1,90 @@
+//! Shapes and where they stand.
+
+use crate::geometry::{Affine, TriangleMesh, Vec3};
+use indexmap::IndexMap;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// A sphere.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Sphere {
+    /// Its name, for messages and explanations.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
+    /// Centre.
+    pub center: [f64; 3],
+    /// Radius; 0 is allowed and invisible.
+    pub radius: f64,
+    /// Name of its material.
+    pub material: String,
+}
+
+/// A triangle mesh, from a file or written out.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Mesh {
+    /// Its name, for messages and explanations.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
+    /// The model file, relative to the scene file. Give this, or `vertices` and `faces`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub file: Option<String>,
+    /// Positions, if there is no file.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub vertices: Vec<[f64; 3]>,
+    /// Three numbers of vertices for each face, counted from 0, counter-clockwise seen from outside.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub faces: Vec<[u32; 3]>,
+    /// Name of the material of all faces; left out: what the model file says.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub material: Option<String>,
+    /// Which material stands for which name in the model file, where `material` is left out.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    pub materials: IndexMap<String, String>,
+    /// Normals are smoothed over edges up to this angle in degrees; 0 is flat.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub smooth_angle: f64,
+    /// Steps that put the model in its place, one after the other.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub transform: Vec<Transform>,
+    /// The triangles themselves, once the file has been read; `None` before.
+    #[serde(skip)]
+    #[schemars(skip)]
+    pub geometry: Option<Arc<TriangleMesh>>,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "the signature that serde asks for")]
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
+}
+
+/// One step of a placement.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase", deny_unknown_fields)]
+pub enum Transform {
+    /// Turns about an axis through the origin, right-handed.
+    Rotate {
+        /// Direction of the axis, of any length but 0.
+        axis: [f64; 3],
+        /// Angle in degrees.
+        degrees: f64,
+    },
+    /// Scales along the three axes.
+    Scale([f64; 3]),
+    /// Moves.
+    Move([f64; 3]),
+}
+
+impl Transform {
+    /// The step as a map; `None` for a rotation about no axis by another angle than 0.
+    pub fn map(&self) -> Option<Affine> {
+        match *self {
+            Self::Rotate { axis: [0.0, 0.0, 0.0], degrees: 0.0 } => Some(Affine::IDENTITY),
+            Self::Rotate { axis, degrees } => Affine::rotation(axis.into(), degrees),
+            Self::Scale(factors) => Some(Affine::scaling(factors.into())),
+            Self::Move(offset) => Some(Affine::translation(Vec3::from(offset))),
+        }
+    }
+}

@@ -1,0 +1,73 @@
+//! Warnings: what is probably not meant, but can be drawn.
+
+use super::Step;
+use std::fmt;
+
+/// Something that is probably not meant. The picture is made all the same.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Warning {
+    /// Which kind.
+    pub code: WarningCode,
+    /// Where in the scene.
+    pub place: Vec<Step>,
+    /// What was found, and what is done about it.
+    pub message: String,
+}
+
+macro_rules! codes {
+    ($($(#[$doc:meta])* $variant:ident = $code:literal $name:literal,)*) => {
+        /// Kinds of warnings. Each has a number and a name, listed in `docs/warnings.md`.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        #[non_exhaustive]
+        pub enum WarningCode {
+            $($(#[$doc])* $variant,)*
+        }
+
+        impl WarningCode {
+            /// All kinds.
+            pub const ALL: &[Self] = &[$(Self::$variant,)*];
+
+            /// Number and name, like `W001 invisible-sphere`.
+            pub fn code(self) -> &'static str {
+                match self { $(Self::$variant => concat!($code, " ", $name),)* }
+            }
+        }
+    };
+}
+
+codes! {
+    /// A sphere of radius 0.
+    InvisibleSphere = "W001" "invisible-sphere",
+    /// A mesh with a transparent material in an integrator that refracts only in spheres.
+    MeshNotRefracted = "W002" "mesh-not-refracted",
+    /// `ko` above 1: the transparent share is negative.
+    OpacityAboveOne = "W003" "opacity-above-one",
+    /// Faces without area, which are left out.
+    DegenerateFaces = "W004" "degenerate-faces",
+    /// A vertex shared by too many faces to be smoothed.
+    NotSmoothed = "W005" "not-smoothed",
+    /// A line that starts with an unknown word.
+    UnknownKeyword = "W101" "unknown-keyword",
+    /// The same setting given twice; the last one counts.
+    RepeatedLine = "W102" "repeated-line",
+    /// A file found in more than one place.
+    AmbiguousFile = "W103" "ambiguous-file",
+    /// A model without a usable material.
+    NoMaterial = "W104" "no-material",
+    /// A texture that is not drawn.
+    TextureIgnored = "W105" "texture-ignored",
+    /// Lines that fit several dialects, or none of them fully.
+    UnclearDialect = "W106" "unclear-dialect",
+    /// A setting that this integrator does not use.
+    SettingIgnored = "W107" "setting-ignored",
+    /// The bounds were widened to keep pixels square.
+    WidenedBounds = "W201" "widened-bounds",
+    /// The light behind branches that were cut short.
+    LostLight = "W202" "lost-light",
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.code.code(), self.message)
+    }
+}

@@ -1,0 +1,25 @@
+//! Growing the ray tree, generation by generation.
+//!
+//! ```text
+//! generation 0      camera rays, one per pixel of a tile
+//!      │ closest hits, compacted: only rays that hit go on
+//!      │ local colour ── light by light: shadow rays, compacted, any hit
+//!      │ contributions, added to their pixels one by one in queue order
+//!      ▼ children, compacted: all mirror rays, then all refracted rays, each in their parents' order
+//! generation 1 … until max_depth, or until no ray is left
+//! ```
+//!
+//! The order of addition within a pixel follows from its own rays alone, so neither the tile, nor the lane width, nor
+//! the thread can change a bit of it.
+
+mod generation;
+mod lecture;
+mod queue;
+mod statistics;
+mod tree;
+
+pub(crate) use generation::{Settings, Tracer};
+pub use queue::RayKind;
+pub use statistics::{LostLight, RayCounts, Statistics};
+pub(crate) use tree::Recorder;
+pub use tree::{Node, RayTree};

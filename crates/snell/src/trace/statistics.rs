@@ -1,0 +1,118 @@
+//! What a render did: rays by kind and depth, and the light that was cut off.
+
+use super::RayKind;
+
+/// Counts and losses of a render. Independent of threads, tiles and lanes.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Statistics {
+    /// Rays by kind.
+    pub rays: RayCounts,
+    /// How many rays had 0, 1, 2, … bounces behind them. Shadow rays are not in it.
+    pub depth: Vec<u64>,
+    /// Branches that were cut short.
+    pub lost: LostLight,
+}
+
+/// Rays by kind.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct RayCounts {
+    /// From the eye.
+    pub camera: u64,
+    /// From a mirror.
+    pub mirror: u64,
+    /// From the far side of something transparent.
+    pub refracted: u64,
+    /// Towards a light.
+    pub shadow: u64,
+}
+
+impl RayCounts {
+    /// All rays together.
+    pub fn total(&self) -> u64 {
+        self.camera + self.mirror + self.refracted + self.shadow
+    }
+
+    pub(crate) fn add(&mut self, kind: RayKind) {
+        match kind {
+            RayKind::Camera => self.camera += 1,
+            RayKind::Mirror => self.mirror += 1,
+            RayKind::Refracted => self.refracted += 1,
+        }
+    }
+}
+
+/// Light behind branches that were cut off at the depth limit (or at the limit of rays per pixel).
+///
+/// Measured by the throughput of the rays that were not sent: a throughput of 0.05 means that a white thing of radiance
+/// 1 behind that branch would have made the pixel brighter by 0.05. What is really there was not looked at.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct LostLight {
+    /// Rays that were not sent.
+    pub rays: u64,
+    /// Sum of their throughput, in units of 2⁻³²: whole numbers add up to the same sum in any order.
+    sum: u128,
+    /// The worst pixel's sum, in the same units, and its number in row order.
+    worst: (u64, u64),
+}
+
+const UNIT: f64 = (1u64 << 32) as f64;
+
+impl LostLight {
+    /// Adds what one pixel lost; `pixel` is its number in the whole picture, row by row.
+    pub(crate) fn add(&mut self, pixel: u64, throughput: f64) {
+        let quantum = (throughput * UNIT) as u64; // saturates; NaN is 0
+        self.sum += u128::from(quantum);
+        self.offer_worst((quantum, pixel));
+    }
+
+    fn offer_worst(&mut self, (sum, pixel): (u64, u64)) {
+        // Of equally bad pixels the first one in the picture.
+        if sum > self.worst.0 || (sum == self.worst.0 && pixel < self.worst.1) {
+            self.worst = (sum, pixel);
+        }
+    }
+
+    /// Mean throughput lost per pixel of a picture with so many pixels.
+    pub fn share(&self, pixels: u64) -> f64 {
+        self.sum as f64 / UNIT / pixels.max(1) as f64
+    }
+
+    /// The largest throughput lost in one pixel.
+    pub fn worst(&self) -> f64 {
+        self.worst.0 as f64 / UNIT
+    }
+
+    /// Column and row of that pixel in a picture of this width.
+    pub fn worst_pixel(&self, width: u32) -> (u64, u64) {
+        (self.worst.1 % u64::from(width.max(1)), self.worst.1 / u64::from(width.max(1)))
+    }
+}
+
+impl Statistics {
+    /// Adds what another worker did.
+    pub(crate) fn merge(&mut self, other: &Self) {
+        self.rays.camera += other.rays.camera;
+        self.rays.mirror += other.rays.mirror;
+        self.rays.refracted += other.rays.refracted;
+        self.rays.shadow += other.rays.shadow;
+        if self.depth.len() < other.depth.len() {
+            self.depth.resize(other.depth.len(), 0);
+        }
+        for (sum, count) in self.depth.iter_mut().zip(&other.depth) {
+            *sum += count;
+        }
+        self.lost.rays += other.lost.rays;
+        self.lost.sum += other.lost.sum;
+        if other.lost.rays > 0 {
+            self.lost.offer_worst(other.lost.worst);
+        }
+    }
+
+    pub(crate) fn count_generation(&mut self, depth: u32, rays: u64) {
+        let depth = depth as usize;
+        if self.depth.len() <= depth {
+            self.depth.resize(depth + 1, 0);
+        }
+        self.depth[depth] += rays;
+    }
+}

@@ -1,0 +1,76 @@
+//! The ray tree of one pixel, recorded by the engine that renders: there is no second tracer.
+
+use super::generation::{Hits, Observer};
+use super::queue::{RayKind, RayQueue};
+use crate::film::Rgb;
+use crate::geometry::Vec3;
+
+/// One ray, and what it added.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Node {
+    /// Where it comes from.
+    pub kind: RayKind,
+    /// Bounces behind it.
+    pub depth: u32,
+    /// Number of the parent node; `None` for the camera ray.
+    pub parent: Option<usize>,
+    /// Where it starts.
+    pub origin: Vec3,
+    /// Where it goes.
+    pub dir: Vec3,
+    /// What it can add to the pixel for each unit of radiance.
+    pub throughput: Rgb,
+    /// What it hit: primitive, distance, and the unit normal that faces the ray.
+    pub hit: Option<(u32, f64, Vec3)>,
+    /// What that surface adds to the pixel.
+    pub contribution: Rgb,
+}
+
+/// All rays of one pixel, in the order in which they are traced and added.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RayTree {
+    /// The rays, generation by generation.
+    pub nodes: Vec<Node>,
+}
+
+impl RayTree {
+    /// The contributions added up in the engine's order: the pixel, bit for bit.
+    pub fn sum(&self) -> Rgb {
+        let contributions = self.nodes.iter().filter(|n| n.hit.is_some()).map(|n| n.contribution);
+        contributions.fold(Rgb::black(), |sum, c| sum + c)
+    }
+}
+
+/// Writes down every generation of a pixel.
+#[derive(Debug, Default)]
+pub(crate) struct Recorder {
+    pub tree: RayTree,
+    depth: u32,
+    /// Where the previous generation starts.
+    parents: usize,
+}
+
+impl Observer for Recorder {
+    fn generation(&mut self, queue: &RayQueue, hits: &Hits) {
+        let start = self.tree.nodes.len();
+        for row in 0..queue.len() {
+            self.tree.nodes.push(Node {
+                kind: queue.kind[row],
+                depth: self.depth,
+                parent: (self.depth > 0).then(|| self.parents + queue.parent[row] as usize),
+                origin: queue.origin.row(row).into(),
+                dir: queue.dir.row(row).into(),
+                throughput: queue.throughput(row),
+                hit: None,
+                contribution: Rgb::black(),
+            });
+        }
+        for hit in 0..hits.len() {
+            let node = &mut self.tree.nodes[start + hits.ray[hit] as usize];
+            node.hit = Some((hits.primitive[hit], hits.t[hit], hits.normal.row(hit).into()));
+            node.contribution = hits.contribution.row(hit).into();
+        }
+        self.parents = start;
+        self.depth += 1;
+    }
+}

@@ -1,0 +1,93 @@
+//! The placed camera: which ray belongs to which pixel.
+
+use crate::geometry::Vec3;
+use crate::scene::Camera;
+
+/// A camera with its axes, ready to make rays.
+#[derive(Clone, Debug)]
+pub struct CameraFrame {
+    /// Where the eye is.
+    pub eye: Vec3,
+    /// Right, up, and backwards, of unit length.
+    pub axes: [Vec3; 3],
+    /// Left, right, bottom, top.
+    pub bounds: [f64; 4],
+    /// Width and height of the picture in pixels.
+    pub size: [u32; 2],
+    near: f64,
+}
+
+impl CameraFrame {
+    /// The axes U (right), V (up), W (backwards), or `None` where the view is parallel to `up`.
+    pub fn axes(camera: &Camera) -> Option<[Vec3; 3]> {
+        let w = (Vec3::from(camera.eye) - Vec3::from(camera.look_at)).unit();
+        let across = Vec3::from(camera.up).cross(w);
+        // Below this the direction of `up × W` is rounding noise.
+        let upright = across.length() > 1e-12 * Vec3::from(camera.up).length();
+        let u = across.unit();
+        upright.then(|| [u, w.cross(u), w])
+    }
+
+    /// Places a camera that has been validated.
+    pub fn new(camera: &Camera, size: [u32; 2]) -> Self {
+        let axes = Self::axes(camera).unwrap_or_default();
+        Self { eye: camera.eye.into(), axes, bounds: camera.bounds, size, near: camera.near }
+    }
+
+    /// Origin and direction of the ray through a pixel, (0, 0) on top left.
+    pub fn ray(&self, x: u32, y: u32) -> (Vec3, Vec3) {
+        let [left, right, bottom, top] = self.bounds;
+        let [width, height] = self.size;
+        let px = left + share(x, width) * (right - left);
+        let py = top - share(y, height) * (top - bottom);
+        let origin = self.point(px, py);
+        (origin, (origin - self.eye).unit())
+    }
+
+    /// The four corners of the picture on the image plane.
+    pub fn corners(&self) -> [Vec3; 4] {
+        let [left, right, bottom, top] = self.bounds;
+        [self.point(left, bottom), self.point(right, bottom), self.point(left, top), self.point(right, top)]
+    }
+
+    fn point(&self, px: f64, py: f64) -> Vec3 {
+        let [u, v, w] = self.axes;
+        self.eye + w * self.near + u * px + v * py
+    }
+}
+
+/// How far along a row of `count` pixels: 0 at the first, 1 at the last, the middle where there is only one.
+fn share(index: u32, count: u32) -> f64 {
+    if count == 1 { 0.5 } else { f64::from(index) / f64::from(count - 1) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn frame(size: [u32; 2]) -> CameraFrame {
+        let camera = Camera {
+            eye: [0.0, 0.0, 10.0],
+            look_at: [0.0, 0.0, 0.0],
+            up: [0.0, 1.0, 0.0],
+            bounds: [-2.0, 4.0, -1.0, 3.0],
+            near: -5.0,
+            far: None,
+        };
+        CameraFrame::new(&camera, size)
+    }
+
+    #[test]
+    fn pixels_sit_on_the_corners_of_the_grid() {
+        let camera = frame([3, 5]);
+        assert_eq!(camera.axes[0], Vec3::new(1.0, 0.0, 0.0));
+        assert_eq!(camera.ray(0, 0).0, Vec3::new(-2.0, 3.0, 5.0), "top left");
+        assert_eq!(camera.ray(2, 4).0, Vec3::new(4.0, -1.0, 5.0), "bottom right");
+        assert_eq!(camera.ray(1, 2).0, Vec3::new(1.0, 1.0, 5.0), "the middle");
+    }
+
+    #[test]
+    fn a_single_pixel_looks_through_the_middle() {
+        assert_eq!(frame([1, 1]).ray(0, 0).0, Vec3::new(1.0, 1.0, 5.0));
+    }
+}
