@@ -68,20 +68,23 @@ impl Reporter {
     }
 }
 
-/// A number in three digits and a letter: 1.23 M.
+/// A number in three digits and a letter: 1.23M.
 pub fn short(value: f64) -> String {
-    let (value, letter) = match value {
-        v if v >= 1e9 => (v / 1e9, " G"),
-        v if v >= 1e6 => (v / 1e6, " M"),
-        v if v >= 1e3 => (v / 1e3, " k"),
-        v => (v, " "),
-    };
-    let digits = if value >= 100.0 || letter == " " {
-        0
-    } else if value >= 10.0 {
-        1
-    } else {
-        2
-    };
-    format!("{value:.digits$}{letter}")
+    for (unit, letter) in [(1e9, "G"), (1e6, "M"), (1e3, "k")] {
+        if value >= unit {
+            let scaled = value / unit;
+            let digits = if scaled >= 100.0 { 0 } else { 1 + usize::from(scaled < 10.0) };
+            return format!("{scaled:.digits$}{letter}");
+        }
+    }
+    format!("{value:.0}")
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn three_digits_and_a_letter() {
+        let shown = [0.0, 999.0, 1234.0, 55_700.0, 123_456_789.0, 2e12].map(super::short);
+        assert_eq!(shown, ["0", "999", "1.23k", "55.7k", "123M", "2000G"]);
+    }
 }

@@ -128,7 +128,9 @@ fn one(mut recipe: Recipe, mut loaded: Loaded, args: &RenderArgs, output: &Path)
         .chain(world.warnings.iter().map(|w| loaded.warning(w)))
         .chain(widened)
         .collect();
-    warnings.iter().for_each(|warning| warn(warning, args));
+    for warning in &warnings {
+        warn(warning, args);
+    }
     enough_memory(&world, recipe.crop)?;
 
     let reporter = Reporter::new(args.progress, args.quiet, &recipe.name);
@@ -224,7 +226,7 @@ fn summary(recipe: &Recipe, world: &World, rendered: &Rendered, args: &RenderArg
     let total = rays.total() as f64;
     let state = hash.map_or("stopped before it was finished".to_owned(), |h| format!("film {}", &h[..12]));
     eprintln!(
-        "{}: {} x {}, {}rays in {seconds:.2} s ({}rays/s), {state}",
+        "{}: {} x {}, {} rays in {seconds:.2} s ({} rays/s), {state}",
         output.display(),
         film.crop.width,
         film.crop.height,
@@ -233,7 +235,8 @@ fn summary(recipe: &Recipe, world: &World, rendered: &Rendered, args: &RenderArg
     );
     if lost.rays > 0 {
         eprintln!(
-            "  {} at depth {}: {}branches ended, with {:.2} % of the throughput on average, {:.1} % in pixel {worst_x},{worst_y}",
+            "  {}: depth {} ended {} branches; what lies behind them weighs {:.2} % of a pixel on average, \
+             {:.1} % in pixel {worst_x},{worst_y}",
             WarningCode::LostLight.code(),
             world.render.max_depth,
             short(lost.rays as f64),

@@ -54,14 +54,14 @@ pub fn colored() -> bool {
 /// Writes a report with its place in the source to stderr.
 pub fn report(report: &Report) {
     let styles = if colored() { ThemeStyles::ansi() } else { ThemeStyles::none() };
-    let theme = GraphicalTheme { characters: ThemeCharacters::unicode(), styles };
-    let handler = GraphicalReportHandler::new_themed(theme).with_width(100).with_context_lines(0);
+    let characters =
+        ThemeCharacters { error: "error:".to_owned(), warning: "warning:".to_owned(), ..ThemeCharacters::unicode() };
+    let handler = GraphicalReportHandler::new_themed(GraphicalTheme { characters, styles }).with_width(100);
     let mut text = String::new();
     if handler.render_report(&mut text, report).is_err() {
-        text = report.message.clone();
+        text.clone_from(&report.message);
     }
-    let what = if report.warning.is_some() { "warning" } else { "error" };
-    eprint!("{what}: {}", text.trim_start());
+    eprintln!("{}", text.trim());
 }
 
 /// Writes text to stdout. A reader that has gone away (`| head`) is no error.

@@ -95,19 +95,19 @@ impl Places {
 ///
 /// # Errors
 /// Everything that keeps the file from being read.
-pub fn load(name: &str, options: &LoadOptions) -> Result<Loaded, Report> {
+pub fn load(name: &str, options: &LoadOptions) -> Result<Loaded, Vec<Report>> {
     let path = Path::new(name);
     if path.is_dir() {
-        return Err(Report::error(format!("`{name}` is a folder")).help("name the scene file in it"));
+        return Err(vec![Report::error(format!("`{name}` is a folder")).help("name the scene file in it")]);
     }
     if !path.exists() {
         // A name with an ending is meant as a file.
         return match builtin::find(name) {
             Ok(source) => load_text(source, Kind::Toml, Path::new("."), options),
             Err(_) if path.extension().is_some_and(|e| e == "txt" || e == "toml" || e == "json") => {
-                Err(Report::error(format!("there is no file `{name}`")))
+                Err(vec![Report::error(format!("there is no file `{name}`"))])
             }
-            Err(report) => Err(report),
+            Err(report) => Err(vec![report]),
         };
     }
     let source = disk::read_text(path, disk::MAX_SCENE_BYTES)?;
@@ -137,7 +137,7 @@ fn kind_of(path: &Path, text: &str) -> Kind {
 ///
 /// # Errors
 /// As [`load`].
-pub fn load_text(source: Source, kind: Kind, folder: &Path, options: &LoadOptions) -> Result<Loaded, Report> {
+pub fn load_text(source: Source, kind: Kind, folder: &Path, options: &LoadOptions) -> Result<Loaded, Vec<Report>> {
     let mut warnings = Vec::new();
     let mut dialect = None;
     let (scene, places) = match kind {

@@ -74,16 +74,16 @@ impl Report {
 
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.message)
+        match self.warning {
+            Some(code) => write!(f, "{code}: {}", self.message),
+            None => f.write_str(&self.message),
+        }
     }
 }
 
 impl std::error::Error for Report {}
 
 impl Diagnostic for Report {
-    fn code<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
-        self.warning.map(|code| Box::new(code) as Box<dyn fmt::Display>)
-    }
     fn severity(&self) -> Option<Severity> {
         Some(if self.warning.is_some() { Severity::Warning } else { Severity::Error })
     }
@@ -96,6 +96,13 @@ impl Diagnostic for Report {
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
         let (_, range) = self.place.as_ref()?;
         Some(Box::new(std::iter::once(LabeledSpan::underline(range.clone()))))
+    }
+}
+
+/// Where several things can be wrong, one of them.
+impl From<Report> for Vec<Report> {
+    fn from(report: Report) -> Self {
+        vec![report]
     }
 }
 

@@ -64,8 +64,9 @@ impl Driver {
 /// Reads a driver. Without a `dialect` the year is recognised.
 ///
 /// # Errors
-/// A line with the wrong number or kind of values, or a line that must be there and is not.
-pub fn parse(source: &Source, dialect: Option<Dialect>) -> Result<Driver, Report> {
+/// A line with the wrong number or kind of values, or a line that must be there and is not; after the warnings so far,
+/// which may well say why.
+pub fn parse(source: &Source, dialect: Option<Dialect>) -> Result<Driver, Vec<Report>> {
     let lines = lines(source);
     let (recognised, unclear) = recognise(&lines);
     let mut reader = Reader {
@@ -78,10 +79,15 @@ pub fn parse(source: &Source, dialect: Option<Dialect>) -> Result<Driver, Report
         places: Vec::new(),
         warnings: if dialect.is_none() { unclear } else { Vec::new() },
     };
-    for line in &lines {
-        reader.line(line)?;
+    let read = lines.iter().try_for_each(|line| reader.line(line));
+    let mut warnings = std::mem::take(&mut reader.warnings);
+    match read.and_then(|()| reader.finish(source)) {
+        Ok(driver) => Ok(Driver { warnings, ..driver }),
+        Err(report) => {
+            warnings.push(report);
+            Err(warnings)
+        }
     }
-    reader.finish(source)
 }
 
 #[derive(Default)]
@@ -358,7 +364,7 @@ impl Reader {
     }
 
     fn finish(self, source: &Source) -> Result<Driver, Report> {
-        let Self { dialect, values, models, places, warnings, .. } = self;
+        let Self { dialect, values, models, places, .. } = self;
         let missing = |what: &str| {
             let end = source.text.trim_end().len();
             Report::error(format!("this driver has no `{what}` line"))
@@ -392,7 +398,7 @@ impl Reader {
             spheres: values.spheres,
             meshes: Vec::new(),
         };
-        Ok(Driver { dialect, scene, models, warnings, places })
+        Ok(Driver { dialect, scene, models, warnings: Vec::new(), places })
     }
 }
 

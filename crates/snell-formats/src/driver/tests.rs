@@ -12,7 +12,7 @@ fn read(text: &str) -> Driver {
 }
 
 fn refused(text: &str) -> (usize, usize, String) {
-    let report = parse(&Source::new("driver.txt", text), None).unwrap_err();
+    let report = parse(&Source::new("driver.txt", text), None).unwrap_err().pop().unwrap();
     let (source, range) = report.place.clone().expect("a place");
     let (line, column) = source.line_column(range.start);
     (line, column, format!("{} / {}", report.message, report.help.unwrap_or_default()))
@@ -112,6 +112,12 @@ fn unknown_repeated_and_contradicting_lines_are_warnings() {
 }
 
 #[test]
+fn a_misspelt_keyword_explains_what_is_missing() {
+    let reports = parse(&Source::new("x", EARLY.replace("look", "lok")), None).unwrap_err();
+    assert!(reports[0].help.as_deref() == Some("did you mean `look`?") && reports[1].message.contains("no `look`"));
+}
+
+#[test]
 fn errors_name_line_and_column() {
     for (text, at, message) in [
         (format!("{EARLY}light 0 0 0 1 1 1\n"), (7, 1), "7 values, read 6"),
@@ -173,7 +179,8 @@ mod properties {
         fn no_text_breaks_the_reader(words in prop::collection::vec(prop::sample::select(WORDS), 0..80)) {
             let source = Source::new("driver.txt", words.join(" "));
             for dialect in [None].into_iter().chain(Dialect::ALL.map(Some)) {
-                if let Err(report) = parse(&source, dialect) {
+                let reports = parse(&source, dialect).map_or_else(|reports| reports, |driver| driver.warnings);
+                for report in reports {
                     let (source, range) = report.place.unwrap();
                     prop_assert!(source.text.get(range).is_some());
                 }

@@ -1,0 +1,347 @@
+//! What the command promises: exit codes, messages, files, and that nothing is lost.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
+mod common;
+
+use common::{command, run, snell, stderr, stdout};
+use std::fs;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+const TINY: &[&str] = &["--size", "24x24"];
+
+fn render(folder: &Path, arguments: &[&str]) {
+    run(folder, &[&["render", "-q"], arguments].concat());
+}
+
+#[test]
+fn built_in_scenes_render_from_anywhere_and_can_be_saved() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let list = stdout(&run(at, &["scenes"]));
+    let names: Vec<&str> =
+        list.lines().filter_map(|l| l.split_whitespace().next()).filter(|n| n.contains('/')).collect();
+    assert_eq!(names.len(), 15, "{list}");
+    render(at, &[&names, TINY, &["-o", "out/"]].concat());
+    assert_eq!(fs::read_dir(at.join("out")).unwrap().count(), 15);
+
+    run(at, &["scenes", "--save", "lecture/default", "-o", "mine.toml"]);
+    render(at, &[&["mine.toml", "-o", "mine.npy"], TINY].concat());
+    render(at, &[&["lecture/default", "-o", "built-in.npy"], TINY].concat());
+    run(at, &["diff", "mine.npy", "built-in.npy"]);
+    let again = snell(at, &["scenes", "--save", "lecture/default", "-o", "mine.toml"]);
+    assert!(again.status.code() == Some(1) && stderr(&again).contains("exists"));
+}
+
+#[test]
+fn scenes_say_what_to_look_at() {
+    let folder = tempfile::tempdir().unwrap();
+    for line in stdout(&run(folder.path(), &["scenes"])).lines().take(15) {
+        let name = line.split_whitespace().next().unwrap();
+        let text = stdout(&run(folder.path(), &["info", name, "--scene"]));
+        assert!(text.starts_with("# ") && text.contains("# Look"), "{name} starts with no comment");
+    }
+}
+
+#[test]
+fn every_format_is_written_and_compared() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    for file in ["a.png", "a.ppm", "a.exr", "a.npy"] {
+        render(at, &[&["lecture/default", "-o", file], TINY].concat());
+    }
+    render(at, &[&["lecture/default", "-o", "b.png", "--bits", "16"], TINY].concat());
+    run(at, &["diff", "a.png", "a.ppm"]);
+    // 16 bit keeps what 8 bit rounds: at most half a step and a little.
+    assert_eq!(snell(at, &["diff", "a.png", "b.png"]).status.code(), Some(1));
+    run(at, &["diff", "a.png", "b.png", "--tolerance", "0.51"]);
+    // f32 rounds a number near 1 by at most 6e-8.
+    run(at, &["diff", "a.exr", "a.npy", "--tolerance", "1e-7"]);
+}
+
+#[test]
+fn diff_says_how_much_and_where() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    fs::write(at.join("a.ppm"), "P3 2 1 255 0 0 0 10 20 30\n").unwrap();
+    fs::write(at.join("b.ppm"), "P3\n2 1\n255\n0 0 0 10 24 30\n").unwrap();
+    fs::write(at.join("c.ppm"), "P3 1 1 255 0 0 0\n").unwrap();
+    let output = snell(at, &["diff", "a.ppm", "b.ppm", "-o", "d.png"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert_eq!(stdout(&output), "max 4 of 255 at pixel 1,0, mean 0.666667 of 255, 1 of 2 pixels differ\n");
+    assert!(at.join("d.png").exists());
+    assert_eq!(snell(at, &["diff", "a.ppm", "b.ppm", "--tolerance", "4"]).status.code(), Some(0));
+    let sizes = snell(at, &["diff", "a.ppm", "c.ppm"]);
+    assert!(sizes.status.code() == Some(1) && stderr(&sizes).contains("sizes differ"));
+    assert_eq!(snell(at, &["diff", "a.ppm", "no.ppm"]).status.code(), Some(1));
+}
+
+#[test]
+fn settings_reach_the_picture() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let picture = |name: &str, arguments: &[&str]| {
+        render(at, &[arguments, TINY, &["-o", name]].concat());
+    };
+    for (built_in, changed) in [
+        ("lecture/diamond", &["lecture/default", "--set", "material.glass.eta=2.42"][..]),
+        ("lecture/no-shadows", &["lecture/default", "--shadows", "off"]),
+        ("lecture/diamond-depth-2", &["lecture/diamond", "--depth", "2"]),
+        ("lecture/wide", &["lecture/default", "--set", "camera.near=-4"]),
+        ("lecture/quarter", &["lecture/default", "--set", "camera.bounds=[-2, 0, -2, 0]"]),
+    ] {
+        picture("a.npy", &[built_in]);
+        picture("b.npy", changed);
+        run(at, &["diff", "a.npy", "b.npy"]);
+        picture("c.npy", &["lecture/default"]);
+        assert_eq!(snell(at, &["diff", "a.npy", "c.npy"]).status.code(), Some(1), "{built_in} is the default scene");
+    }
+    picture("a.npy", &["lecture/default", "--integrator", "course2018"]);
+    assert_eq!(snell(at, &["diff", "a.npy", "c.npy"]).status.code(), Some(1));
+    picture("srgb.png", &["lecture/default", "--transfer", "srgb"]);
+    picture("linear.png", &["lecture/default"]);
+    assert_eq!(snell(at, &["diff", "srgb.png", "linear.png"]).status.code(), Some(1));
+}
+
+#[test]
+fn another_shape_widens_and_says_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let wide = run(folder.path(), &["render", "lecture/default", "--size", "40x20", "-o", "a.npy"]);
+    assert!(stderr(&wide).contains("W201 widened-bounds"), "{}", stderr(&wide));
+    let stretched = run(folder.path(), &["render", "lecture/default", "--size", "40x20", "--stretch", "-o", "b.npy"]);
+    assert!(!stderr(&stretched).contains("W201"));
+    let same = run(folder.path(), &["render", "lecture/default", "--size", "20x20", "-o", "c.npy"]);
+    assert!(!stderr(&same).contains("W201"));
+}
+
+#[test]
+fn a_picture_can_be_rendered_again_from_itself() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let changed = ["lecture/default", "--set", "material.glass.eta=1.7", "--depth", "3", "--crop", "4,6,12,9"];
+    for name in ["a.png", "a.exr"] {
+        render(at, &[&changed, TINY, &["-o", name]].concat());
+        render(at, &["--from", name, "-o", &format!("again-{name}")]);
+        run(at, &["diff", name, &format!("again-{name}")]);
+        let info = stdout(&run(at, &["info", name]));
+        assert!(info.contains("material.glass.eta=1.7") && info.contains("4,6,12,9"), "{info}");
+    }
+    render(at, &[&["lecture/default", "-o", "a.ppm"], TINY].concat());
+    let none = snell(at, &["render", "--from", "a.ppm", "-o", "x.png"]);
+    assert!(none.status.code() == Some(1) && stderr(&none).contains("does not say how it was made"));
+}
+
+const TRIANGLE: &str = "v -1 -1 0\nv 1 -1 0\nv 0 1 0\nusemtl m\nf 1 2 3\n";
+const DRIVER: &str = "eye 0 0 9\nlook 0 0 0\nup 0 1 0\nd 5\nbounds -1 -1 1 1\nres 8 8\nambient 1 1 1\n\
+                      model 0 0 1 90 1 0 0 0 t.obj\n";
+
+fn triangle_scene(at: &Path) {
+    fs::create_dir_all(at.join("models")).unwrap();
+    fs::write(at.join("d.txt"), DRIVER).unwrap();
+    fs::write(at.join("models/t.obj"), format!("mtllib t.mtl\n{TRIANGLE}")).unwrap();
+    fs::write(at.join("models/t.mtl"), "newmtl m\nKa .5 .6 .7\n").unwrap();
+}
+
+#[test]
+fn a_changed_model_is_not_rendered_again_silently() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    triangle_scene(at);
+    render(at, &["d.txt", "-o", "a.png"]);
+    render(at, &["--from", "a.png", "-o", "b.png"]);
+    run(at, &["diff", "a.png", "b.png"]);
+    // Also from another folder: the picture remembers where its models are.
+    fs::create_dir(at.join("elsewhere")).unwrap();
+    render(&at.join("elsewhere"), &["--from", "../a.png", "-o", "b.png"]);
+    fs::write(at.join("models/t.mtl"), "newmtl m\nKa .5 .6 .8\n").unwrap();
+    let changed = snell(at, &["render", "--from", "a.png", "-o", "b.png"]);
+    assert_eq!(changed.status.code(), Some(3));
+    assert!(stderr(&changed).contains("t.mtl` has changed"), "{}", stderr(&changed));
+}
+
+#[test]
+fn models_are_found_missed_and_refused_with_their_place() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    triangle_scene(at);
+    let scene = "snell = 1\n[render]\nintegrator = 'lecture'\nsize = [8, 8]\nmax_depth = 1\n[camera]\neye = [0, 0, 9]\n\
+                 look_at = [0, 0, 0]\nup = [0, 1, 0]\nbounds = [-1, 1, -1, 1]\nnear = -5\n[[mesh]]\nfile = 't.obj'\n";
+    fs::write(at.join("s.toml"), scene).unwrap();
+    render(at, &["s.toml", "-o", "s.png"]);
+    for (model, place, message) in [
+        ("v 0 0 0\nf 1 2 3\n", "t.obj:2:5", "no vertex 2: the file has 1"),
+        ("v 0 0 zero\n", "t.obj:1:7", "expected a number, read `zero`"),
+        ("hello\n", "t.obj:1:1", "has no faces"),
+        ("", "t.obj:1:1", "has no faces"),
+    ] {
+        fs::write(at.join("models/t.obj"), model).unwrap();
+        for scene in ["s.toml", "d.txt"] {
+            let output = snell(at, &["render", scene, "-o", "x.png"]);
+            let said = stderr(&output);
+            assert_eq!(output.status.code(), Some(3), "{said}");
+            assert!(said.contains(place) && said.contains(message), "{said}");
+        }
+    }
+    fs::remove_file(at.join("models/t.obj")).unwrap();
+    for (scene, place) in [("s.toml", "s.toml:13:8"), ("d.txt", "d.txt:8:1")] {
+        let output = snell(at, &["render", scene, "-o", "x.png"]);
+        assert!(stderr(&output).contains("is not there") && stderr(&output).contains(place), "{}", stderr(&output));
+        assert!(stderr(&output).contains("--search"));
+    }
+    assert!(!at.join("x.png").exists());
+}
+
+#[test]
+fn what_is_wrong_with_a_scene_is_shown_in_the_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    run(at, &["scenes", "--save", "lecture/default"]);
+    let text = fs::read_to_string(at.join("default.toml")).unwrap();
+    for (from, to, line, message) in [
+        ("radius = 9", "radius = -9", "radius = -9", "must not be negative, read -9"),
+        ("radius = 9", "radius = nan", "radius = nan", "expected a number"),
+        ("radius = 9", "radios = 9", "radios = 9", "did you mean `radius`?"),
+        ("material = \"red\"", "material = \"rot\"", "material = \"rot\"", "glass`, `red`, `green`, `blue"),
+        ("look_at = [50, 50, 10]", "look_at = [50, 50, 100]", "look_at =", "no direction to look in"),
+        ("up = [0, 1, 0]", "up = [0, 0, 3]", "up =", "parallel to the view"),
+        ("bounds = [-2, 2, -2, 2]", "bounds = [-2, -2, 2, 2]", "bounds =", "left, right, bottom, top"),
+        ("size = [512, 512]", "size = [512, 0]", "size =", "512 x 0 pixels"),
+        ("size = [512, 512]", "size = [4000000000, 4000000000]", "", "GiB"),
+        ("near = -5", "near = 5", "near = 5", "must be negative"),
+        ("position = [20, 100, 100]", "", "[[light]]", "needs a position or a direction"),
+        ("integrator = \"lecture\"", "", "[render]", "which model of light"),
+        ("snell = 1", "snell = 2", "snell = 2", "this program reads version 1"),
+        ("eta = 2.0", "eta = 0", "eta = 0", "must be above 0"),
+        ("[camera]", "[camera", "[camera", ""),
+    ] {
+        assert!(text.contains(from), "{from}");
+        fs::write(at.join("bad.toml"), text.replacen(from, to, 1)).unwrap();
+        let output = snell(at, &["render", "bad.toml", "-o", "x.png"]);
+        let said = stderr(&output);
+        assert_eq!(output.status.code(), Some(3), "{to}: {said}");
+        assert!(said.contains(line) && said.contains(message), "{to}: {said}");
+        assert!(line.is_empty() || said.contains("bad.toml:"), "no place: {said}");
+    }
+    fs::write(at.join("cut.toml"), &text[..text.len() / 3]).unwrap();
+    assert_eq!(snell(at, &["render", "cut.toml"]).status.code(), Some(3));
+}
+
+#[test]
+fn wrong_usage_ends_with_2() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    fs::write(at.join("s.txt"), DRIVER).unwrap();
+    for arguments in [
+        &["render"][..],
+        &["render", "lecture/default", "-o", "picture.jpg"],
+        &["render", "lecture/default", "--size", "0x5"],
+        &["render", "lecture/default", "--size", "5"],
+        &["render", "lecture/default", "--crop", "1,2,3"],
+        &["render", "lecture/default", "--crop", "500,0,20,20"],
+        &["render", "lecture/default", "--shadows", "soft"],
+        &["render", "lecture/default", "--stretch"],
+        &["render", "a/driver.txt", "b/driver.txt", "-o", "out/"],
+        &["render", "--from", "x.png", "--size", "5x5"],
+        &["convert", "s.txt", "-o", "s.yaml"],
+        &["diff", "a.png", "b.png", "--tolerance", "nan"],
+        &["scenes", "--save", "lecture/defualt"],
+        &["paint"],
+    ] {
+        let output = snell(at, arguments);
+        assert_eq!(output.status.code(), Some(2), "snell {}\n{}", arguments.join(" "), stderr(&output));
+    }
+    let near = snell(at, &["scenes", "--save", "lecture/defualt"]);
+    assert!(stderr(&near).contains("did you mean `lecture/default`?"));
+    assert_eq!(snell(at, &["render", "lecture/defualt"]).status.code(), Some(3));
+    assert_eq!(snell(at, &["render", "no.toml"]).status.code(), Some(3));
+}
+
+#[test]
+fn a_scene_is_not_overwritten_by_its_picture() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    triangle_scene(at);
+    fs::copy(at.join("d.txt"), at.join("d.png")).unwrap();
+    let before = fs::read(at.join("d.png")).unwrap();
+    assert_eq!(snell(at, &["render", "d.png", "-o", "d.png"]).status.code(), Some(2));
+    assert_eq!(fs::read(at.join("d.png")).unwrap(), before);
+}
+
+#[test]
+fn one_bad_scene_of_many_does_not_stop_the_others() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    fs::write(at.join("bad.toml"), "snell = 1").unwrap();
+    let output = snell(at, &[&["render", "bad.toml", "lecture/default", "-o", "out"], TINY].concat());
+    assert_eq!(output.status.code(), Some(3));
+    assert!(at.join("out/default.png").exists());
+}
+
+#[test]
+fn progress_as_json_is_json() {
+    let folder = tempfile::tempdir().unwrap();
+    let arguments = [&["render", "lecture/default", "-o", "a.png", "--progress", "json"], TINY].concat();
+    let said = stderr(&run(folder.path(), &arguments));
+    let events: Vec<serde_json::Value> = said.lines().map(|l| serde_json::from_str(l).unwrap()).collect();
+    assert_eq!(events[0]["event"], "progress");
+    let done = events.last().unwrap();
+    assert_eq!(done["event"], "done");
+    assert_eq!(done["rays"]["camera"], 24 * 24);
+    assert_eq!(done["film_sha256"].as_str().unwrap().len(), 64);
+}
+
+#[test]
+fn stderr_into_a_file_has_no_bar_and_no_colour() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = run(folder.path(), &[&["render", "lecture/default", "-o", "a.png"], TINY].concat());
+    let said = stderr(&output);
+    assert!(!said.contains('\u{1b}') && !said.contains('━'), "{said}");
+    assert!(said.contains("24 x 24") && said.contains("rays/s"), "{said}");
+    let quiet = run(folder.path(), &[&["render", "lecture/default", "-o", "a.png", "-q"], TINY].concat());
+    assert_eq!(stderr(&quiet), "");
+}
+
+/// ^C within a second: what is done is written, unfinished pixels are transparent, and the exit code is 130.
+#[cfg(unix)]
+#[test]
+fn interrupted_renders_keep_what_is_done() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let arguments = ["render", "lecture/default", "--size", "6000x6000", "--progress", "json", "-o"];
+    for name in ["a.png", "a.npy"] {
+        let mut child =
+            command(at, &[&arguments[..], &[name]].concat()).stderr(std::process::Stdio::piped()).spawn().unwrap();
+        // Once the first tiles are reported, it is running.
+        let mut lines = std::io::BufRead::lines(std::io::BufReader::new(child.stderr.take().unwrap()));
+        lines.next().unwrap().unwrap();
+        let rest = std::thread::spawn(move || lines.map_while(Result::ok).collect::<Vec<_>>());
+        let interrupted = Instant::now();
+        let kill = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+        assert!(kill.success());
+        assert_eq!(child.wait().unwrap().code(), Some(130));
+        // Stopping takes milliseconds; writing 36 million pixels takes the rest, on a machine that does other things too.
+        assert!(interrupted.elapsed() < Duration::from_mins(1));
+        assert!(rest.join().unwrap().last().unwrap().contains("\"interrupted\""));
+        assert!(at.join(name).exists());
+    }
+    let litter =
+        fs::read_dir(at).unwrap().flatten().filter(|e| e.file_name().to_string_lossy().contains(".tmp")).count();
+    assert_eq!(litter, 0);
+}
+
+#[test]
+fn info_schema_and_completions_answer() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    triangle_scene(at);
+    let info = stdout(&run(at, &["info", "d.txt"]));
+    for expected in ["dialect", "2018", "course2018, depth 0", "8 x 8", "1 triangles"] {
+        assert!(info.contains(expected), "{expected} in\n{info}");
+    }
+    let schema: serde_json::Value = serde_json::from_str(&stdout(&run(at, &["schema"]))).unwrap();
+    assert!(schema["properties"]["sphere"].is_object());
+    for shell in ["bash", "zsh", "fish"] {
+        assert!(stdout(&run(at, &["completions", shell])).contains("snell"));
+    }
+}

@@ -1,0 +1,48 @@
+# Sourced by the other scripts: how to fail, and what has to be there.
+
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+# Says what is missing and the command that helps, and stops with 2.
+missing() {
+    printf '\nSnell needs %s, and it cannot be installed from here. Please run:\n\n    %s\n\nthen try again.\n' "$1" "$2" >&2
+    exit 2
+}
+
+# The Rust toolchain that rust-toolchain.toml names, with its components; the WASM target too if asked for.
+need_rust() {
+    local channel
+    channel=$(sed -n 's/^channel = "\(.*\)"/\1/p' rust-toolchain.toml)
+    if command -v rustup >/dev/null; then
+        local install=(rustup toolchain install "$channel" --profile minimal --component clippy --component rustfmt)
+        [ "${1:-}" != wasm ] || install+=(--target wasm32-unknown-unknown)
+        if ! complete_toolchain "$channel" "${1:-}"; then
+            printf 'Installing Rust %s ...\n' "$channel" >&2
+            "${install[@]}" --no-self-update >&2 || missing "the Rust toolchain $channel" "${install[*]}"
+        fi
+    elif ! cargo --version 2>/dev/null | grep -qF "cargo $channel"; then
+        missing "Rust $channel" 'sudo apt-get install rustup   (or install rustup as rust-lang.org describes)'
+    fi
+    command -v cc >/dev/null || missing 'a linker (cc)' 'sudo apt-get install gcc libc6-dev'
+}
+
+complete_toolchain() {
+    local parts
+    parts=$(rustup component list --toolchain "$1" --installed 2>/dev/null) || return 1
+    grep -q '^clippy' <<<"$parts" && grep -q '^rustfmt' <<<"$parts" || return 1
+    [ "$2" != wasm ] || grep -q '^rust-std-wasm32-unknown-unknown' <<<"$parts"
+}
+
+# A virtual environment of our own with what the Python tests need.
+need_python() {
+    python3 -c 'import sys; sys.exit(sys.version_info < (3, 10))' 2>/dev/null ||
+        missing 'Python 3.10 or newer' 'sudo apt-get install python3 python3-venv'
+    local stamp=.venv/requirements.txt
+    if ! cmp -s tests/requirements.txt "$stamp"; then
+        rm -rf .venv
+        python3 -m venv .venv || missing "Python's venv module" 'sudo apt-get install python3-venv'
+        .venv/bin/python -m pip install --quiet --disable-pip-version-check -r tests/requirements.txt ||
+            missing 'the Python packages of the tests' '.venv/bin/python -m pip install -r tests/requirements.txt'
+        cp tests/requirements.txt "$stamp"
+    fi
+}
