@@ -132,6 +132,14 @@ mod tests {
     }
 
     #[test]
+    fn every_warning_is_documented() {
+        let docs = include_str!("../../../docs/warnings.md");
+        for code in snell::scene::WarningCode::ALL {
+            assert!(docs.contains(&format!("| `{}` |", code.code())), "{} is not in docs/warnings.md", code.code());
+        }
+    }
+
+    #[test]
     fn the_nearest_word_is_near() {
         assert_eq!(nearest("radus", ["center", "radius"]), Some("radius"));
         assert_eq!(nearest("zzz", ["center", "radius"]), None);

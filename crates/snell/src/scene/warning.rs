@@ -58,8 +58,6 @@ codes! {
     TextureIgnored = "W105" "texture-ignored",
     /// Lines that fit several dialects, or none of them fully.
     UnclearDialect = "W106" "unclear-dialect",
-    /// A setting that this integrator does not use.
-    SettingIgnored = "W107" "setting-ignored",
     /// The bounds were widened to keep pixels square.
     WidenedBounds = "W201" "widened-bounds",
     /// The light behind branches that were cut short.
