@@ -2,7 +2,7 @@
 
 use crate::film::{Crop, Film, FilmTooLarge, Rgb};
 use crate::lanes::{ArrayLanes, Lanes};
-use crate::trace::{RayTree, Recorder, Settings, Statistics, Tracer};
+use crate::trace::{RayTree, Recorder, Statistics, Tracer};
 use crate::world::World;
 use std::fmt;
 use std::sync::Mutex;
@@ -120,7 +120,7 @@ pub fn render(world: &World, options: &Options<'_>) -> Result<Rendered, RenderEr
 
 /// Traces one pixel and writes down every ray. The sum of the tree is the film's value, bit for bit.
 pub fn trace_pixel(world: &World, x: u32, y: u32) -> (Rgb, RayTree) {
-    let mut tracer = Tracer::<f64, _>::new(world, Settings { cancel: None }, Recorder::default());
+    let mut tracer = Tracer::<f64, _>::new(world, None, Recorder::default());
     let radiance = tracer.trace(&[(x, y)]).and_then(|p| p.first().copied()).unwrap_or_default();
     (radiance, tracer.observer.tree)
 }
@@ -152,7 +152,7 @@ impl Shared<'_> {
 
     fn worker<L: Lanes>(&self) {
         let cancel = self.options.cancel;
-        let mut tracer = Tracer::<L, ()>::new(self.world, Settings { cancel }, ());
+        let mut tracer = Tracer::<L, ()>::new(self.world, cancel, ());
         let size = u64::from(self.options.tile_size.max(1));
         let columns = u64::from(self.crop.width).div_ceil(size);
         let tiles = columns * u64::from(self.crop.height).div_ceil(size);

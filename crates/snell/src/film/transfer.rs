@@ -1,6 +1,29 @@
 //! From linear light to the integers of a picture file.
 
-use crate::scene::{Rounding, Transfer};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// The curve from linear light to 8 and 16 bit.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Transfer {
+    /// None: the number is the brightness, as in the lecture and the course.
+    Linear,
+    /// The curve of IEC 61966-2-1, which screens expect.
+    #[default]
+    Srgb,
+}
+
+/// What happens to the fraction in 8 and 16 bit.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Rounding {
+    /// To the nearest.
+    #[default]
+    Round,
+    /// Cut off, as the course of 2018 does: `int(255·c)`.
+    Truncate,
+}
 
 /// Turns linear radiance into integers from 0 to `max` (255 or 65535), clipped. NaN becomes 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

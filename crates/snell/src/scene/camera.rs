@@ -1,5 +1,6 @@
 //! The pinhole camera with its image plane.
 
+use crate::geometry::Vec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -23,4 +24,16 @@ pub struct Camera {
     /// Read and ignored, as in the lecture.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub far: Option<f64>,
+}
+
+impl Camera {
+    /// The axes U (right), V (up), W (backwards), or `None` where the view is parallel to `up`.
+    pub fn axes(&self) -> Option<[Vec3; 3]> {
+        let w = (Vec3::from(self.eye) - Vec3::from(self.look_at)).unit();
+        let across = Vec3::from(self.up).cross(w);
+        // Below this the direction of `up × W` is rounding noise.
+        let upright = across.length() > 1e-12 * Vec3::from(self.up).length();
+        let u = across.unit();
+        upright.then(|| [u, w.cross(u), w])
+    }
 }

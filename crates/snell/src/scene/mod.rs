@@ -14,10 +14,12 @@ mod warning;
 pub use camera::Camera;
 pub use light::Light;
 pub use material::Material;
-pub use render::{Integrator, Render, Rounding, Shadows, Transfer};
+pub use render::{Integrator, Render, Shadows};
 pub use shape::{Mesh, Sphere, Transform};
 pub use validate::{LARGEST_NUMBER, MAX_DEPTH, Problem, Step, validate};
 pub use warning::{Warning, WarningCode};
+
+pub use crate::film::transfer::{Rounding, Transfer};
 
 use crate::film::Rgb;
 use indexmap::IndexMap;

@@ -1,5 +1,6 @@
 //! How a picture is made.
 
+use crate::film::transfer::{Rounding, Transfer};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -45,26 +46,4 @@ pub enum Shadows {
     /// Anything at all blocks a light, transparent or not.
     #[default]
     Opaque,
-}
-
-/// The curve from linear light to 8 and 16 bit.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "lowercase")]
-pub enum Transfer {
-    /// None: the number is the brightness, as in the lecture and the course.
-    Linear,
-    /// The curve of IEC 61966-2-1, which screens expect.
-    #[default]
-    Srgb,
-}
-
-/// What happens to the fraction in 8 and 16 bit.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "lowercase")]
-pub enum Rounding {
-    /// To the nearest.
-    #[default]
-    Round,
-    /// Cut off, as the course of 2018 does: `int(255·c)`.
-    Truncate,
 }

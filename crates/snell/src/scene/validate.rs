@@ -171,7 +171,7 @@ fn camera(scene: &Scene, found: &mut Findings) {
         found.problem(at("look_at"), "look_at is where the eye is, so there is no direction to look in", "");
     } else if !up.unit().is_finite() {
         found.problem(at("up"), "up is (0, 0, 0), which is no direction", "try [0, 1, 0]");
-    } else if crate::world::CameraFrame::axes(camera).is_none() {
+    } else if camera.axes().is_none() {
         let message = "up is parallel to the view, so there is no upright picture";
         found.problem(at("up"), message, "choose another up, like [0, 0, 1] when looking straight down y");
     }

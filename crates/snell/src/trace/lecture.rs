@@ -12,8 +12,11 @@
 //! In `lecture` the parent applies `a` and the child applies it again, as in the lecture's own code: the attenuations
 //! compound, and bounce n weighs `kr^(n(n+1)/2)` instead of `kr^n`. In the course's models `f` stays 1.
 
+use super::hits::Batch;
 use crate::film::Rgb;
-use crate::lanes::Lanes;
+use crate::geometry::Vec3;
+use crate::lanes::{Lanes, Mask};
+use crate::optics::snell;
 use crate::scene::Integrator;
 
 /// No hit nearer than this counts. The lecture's own number, in scene units; it is used nowhere else.
@@ -33,9 +36,55 @@ pub(crate) struct Coefficients<L: Lanes> {
     pub ko: Rgb<L>,
 }
 
+/// Rays that leave a batch of hits.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Child<L: Lanes> {
+    /// Which hits send one.
+    pub exists: L::Mask,
+    pub origin: Vec3<L>,
+    pub dir: Vec3<L>,
+    pub weight: Weight<L>,
+}
+
+/// What does this surface add here?
+#[inline(always)]
+pub(crate) fn contribution<L: Lanes>(hits: Batch<'_>) -> Rgb<L> {
+    local(hits.world.render.integrator, &hits.weight(), &hits.coefficients()) * hits.local_color()
+}
+
+/// Which mirror rays leave from here, with what weight? One that carries nothing is not sent.
+#[inline(always)]
+pub(crate) fn mirror_ray<L: Lanes>(hits: Batch<'_>) -> Child<L> {
+    let weight = mirror(hits.world.render.integrator, &hits.weight(), &hits.coefficients());
+    let dir = snell::reflect(hits.wo(), hits.normal());
+    Child { exists: hits.active::<L>() & weight.carries(), origin: hits.point(), dir, weight }
+}
+
+/// Which rays leave on the far side of a glass sphere, with what weight?
+#[inline(always)]
+pub(crate) fn exit_ray<L: Lanes>(hits: Batch<'_>) -> Child<L> {
+    let coefficients = hits.coefficients::<L>();
+    let weight = refracted(hits.world.render.integrator, &hits.weight(), &coefficients);
+    let goes_in = hits.active::<L>() & hits.is_sphere::<L>() & refracts(&coefficients) & weight.carries();
+    if !goes_in.any() {
+        return Child { exists: goes_in, origin: hits.point(), dir: hits.wo(), weight };
+    }
+    let (eta_outside, eta_inside) = (L::splat(hits.world.eta_outside), hits.material(|m| m.eta));
+    let (origin, dir, leaves) =
+        snell::through_sphere(hits.point(), hits.normal(), hits.wo(), hits.center(), eta_outside, eta_inside);
+    Child { exists: goes_in & leaves, origin, dir, weight }
+}
+
+impl<L: Lanes> Weight<L> {
+    #[inline(always)]
+    fn carries(&self) -> L::Mask {
+        (self.factor * self.attenuation).not_black()
+    }
+}
+
 /// What the local colour is multiplied by.
 #[inline(always)]
-pub(crate) fn local<L: Lanes>(model: Integrator, ray: &Weight<L>, surface: &Coefficients<L>) -> Rgb<L> {
+fn local<L: Lanes>(model: Integrator, ray: &Weight<L>, surface: &Coefficients<L>) -> Rgb<L> {
     match model {
         Integrator::Lecture => ray.factor * ray.attenuation * surface.ko,
         Integrator::Course2018 | Integrator::Course2020 => ray.factor * ray.attenuation,
@@ -44,7 +93,7 @@ pub(crate) fn local<L: Lanes>(model: Integrator, ray: &Weight<L>, surface: &Coef
 
 /// What the mirror ray carries.
 #[inline(always)]
-pub(crate) fn mirror<L: Lanes>(model: Integrator, ray: &Weight<L>, surface: &Coefficients<L>) -> Weight<L> {
+fn mirror<L: Lanes>(model: Integrator, ray: &Weight<L>, surface: &Coefficients<L>) -> Weight<L> {
     Weight {
         attenuation: surface.kr * ray.attenuation,
         factor: match model {
@@ -56,7 +105,7 @@ pub(crate) fn mirror<L: Lanes>(model: Integrator, ray: &Weight<L>, surface: &Coe
 
 /// What the exit ray of a sphere carries.
 #[inline(always)]
-pub(crate) fn refracted<L: Lanes>(model: Integrator, ray: &Weight<L>, surface: &Coefficients<L>) -> Weight<L> {
+fn refracted<L: Lanes>(model: Integrator, ray: &Weight<L>, surface: &Coefficients<L>) -> Weight<L> {
     let white = Rgb::gray(1.0).splat();
     match model {
         Integrator::Lecture => Weight {
@@ -70,7 +119,7 @@ pub(crate) fn refracted<L: Lanes>(model: Integrator, ray: &Weight<L>, surface: &
 
 /// Does this surface send an exit ray? `Σko < 3`.
 #[inline(always)]
-pub(crate) fn refracts<L: Lanes>(surface: &Coefficients<L>) -> L::Mask {
+fn refracts<L: Lanes>(surface: &Coefficients<L>) -> L::Mask {
     (surface.ko.r + surface.ko.g + surface.ko.b).lt(L::splat(3.0))
 }
 

@@ -13,12 +13,14 @@
 //! the thread can change a bit of it.
 
 mod generation;
+mod hits;
 mod lecture;
 mod queue;
+mod shading;
 mod statistics;
 mod tree;
 
-pub(crate) use generation::{Settings, Tracer};
+pub(crate) use generation::Tracer;
 pub use queue::RayKind;
 pub use statistics::{LostLight, RayCounts, Statistics};
 pub(crate) use tree::Recorder;

@@ -61,6 +61,15 @@ impl Columns {
         v[2].compress(mask, &mut self.z);
     }
 
+    /// Replaces the rows of the lanes that the mask names.
+    #[inline(always)]
+    pub fn overwrite<L: Lanes>(&mut self, start: usize, mask: L::Mask, v: [L; 3]) {
+        for lane in (0..L::WIDTH).filter(|&i| mask.test(i)) {
+            let row = start + lane;
+            (self.x[row], self.y[row], self.z[row]) = (v[0].lane(lane), v[1].lane(lane), v[2].lane(lane));
+        }
+    }
+
     fn copy_row(&mut self, from: &Self, row: usize) {
         self.push(from.row(row));
     }

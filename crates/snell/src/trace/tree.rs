@@ -1,6 +1,7 @@
 //! The ray tree of one pixel, recorded by the engine that renders: there is no second tracer.
 
-use super::generation::{Hits, Observer};
+use super::generation::Observer;
+use super::hits::Hits;
 use super::queue::{RayKind, RayQueue};
 use crate::film::Rgb;
 use crate::geometry::Vec3;

@@ -18,19 +18,9 @@ pub struct CameraFrame {
 }
 
 impl CameraFrame {
-    /// The axes U (right), V (up), W (backwards), or `None` where the view is parallel to `up`.
-    pub fn axes(camera: &Camera) -> Option<[Vec3; 3]> {
-        let w = (Vec3::from(camera.eye) - Vec3::from(camera.look_at)).unit();
-        let across = Vec3::from(camera.up).cross(w);
-        // Below this the direction of `up × W` is rounding noise.
-        let upright = across.length() > 1e-12 * Vec3::from(camera.up).length();
-        let u = across.unit();
-        upright.then(|| [u, w.cross(u), w])
-    }
-
     /// Places a camera that has been validated.
     pub fn new(camera: &Camera, size: [u32; 2]) -> Self {
-        let axes = Self::axes(camera).unwrap_or_default();
+        let axes = camera.axes().unwrap_or_default();
         Self { eye: camera.eye.into(), axes, bounds: camera.bounds, size, near: camera.near }
     }
 
