@@ -136,6 +136,15 @@ fn set_refuses_what_would_be_ignored() {
 }
 
 #[test]
+fn the_scene_in_the_documentation_is_one() {
+    let page = include_str!("../../../../docs/scenes.md");
+    let text = page.split("```toml").nth(1).and_then(|t| t.split("```").next()).unwrap();
+    let scene = parse(&source(text), Syntax::Toml).unwrap();
+    assert_eq!((scene.spheres.len(), scene.meshes.len(), scene.lights.len()), (1, 2, 2));
+    assert_eq!(snell::scene::validate(&scene).unwrap(), []);
+}
+
+#[test]
 fn the_published_schema_is_this_one() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/scene.schema.json");
     let published = std::fs::read_to_string(path).unwrap_or_default();

@@ -1,7 +1,6 @@
 //! The hits of a generation as columns, and a view of several of them at once.
 
-use super::lecture::{Coefficients, Weight};
-use super::queue::{Columns, RayQueue};
+use super::queue::{Columns, RayQueue, Weight};
 use crate::film::Rgb;
 use crate::geometry::Vec3;
 use crate::lanes::{Lanes, Mask};
@@ -68,6 +67,13 @@ impl Hits {
             self.normal.overwrite(start, active, unit.into());
         }
     }
+}
+
+/// The coefficients of a surface that decide how light goes on.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Coefficients<L: Lanes> {
+    pub kr: Rgb<L>,
+    pub ko: Rgb<L>,
 }
 
 /// The hits from one row on, one in each lane. Lanes beyond the end repeat the last hit and are not active.

@@ -12,7 +12,8 @@
 //! In `lecture` the parent applies `a` and the child applies it again, as in the lecture's own code: the attenuations
 //! compound, and bounce n weighs `kr^(n(n+1)/2)` instead of `kr^n`. In the course's models `f` stays 1.
 
-use super::hits::Batch;
+use super::hits::{Batch, Coefficients};
+use super::queue::Weight;
 use crate::film::Rgb;
 use crate::geometry::Vec3;
 use crate::lanes::{Lanes, Mask};
@@ -21,20 +22,6 @@ use crate::scene::Integrator;
 
 /// No hit nearer than this counts. The lecture's own number, in scene units; it is used nowhere else.
 pub(crate) const T_MIN: f64 = 1e-5;
-
-/// What a ray carries: `a` and `f`.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Weight<L: Lanes> {
-    pub attenuation: Rgb<L>,
-    pub factor: Rgb<L>,
-}
-
-/// The coefficients of a surface that decide how light goes on.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Coefficients<L: Lanes> {
-    pub kr: Rgb<L>,
-    pub ko: Rgb<L>,
-}
 
 /// Rays that leave a batch of hits.
 #[derive(Clone, Copy, Debug)]
@@ -73,13 +60,6 @@ pub(crate) fn exit_ray<L: Lanes>(hits: Batch<'_>) -> Child<L> {
     let (origin, dir, leaves) =
         snell::through_sphere(hits.point(), hits.normal(), hits.wo(), hits.center(), eta_outside, eta_inside);
     Child { exists: goes_in & leaves, origin, dir, weight }
-}
-
-impl<L: Lanes> Weight<L> {
-    #[inline(always)]
-    fn carries(&self) -> L::Mask {
-        (self.factor * self.attenuation).not_black()
-    }
 }
 
 /// What the local colour is multiplied by.

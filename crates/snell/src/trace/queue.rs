@@ -75,6 +75,21 @@ impl Columns {
     }
 }
 
+/// What a ray carries: `a` and `f`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Weight<L: Lanes> {
+    pub attenuation: Rgb<L>,
+    pub factor: Rgb<L>,
+}
+
+impl<L: Lanes> Weight<L> {
+    /// Is there anything left of it?
+    #[inline(always)]
+    pub fn carries(&self) -> L::Mask {
+        (self.factor * self.attenuation).not_black()
+    }
+}
+
 /// Rays that are traced together, in a fixed order.
 #[derive(Debug, Default)]
 pub(crate) struct RayQueue {
