@@ -7,6 +7,9 @@ use snell::render::Progress;
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
+/// The bar comes after this time.
+const BAR_DELAY: Duration = Duration::from_millis(400);
+
 /// JSON lines come at most this often.
 const JSON_INTERVAL: Duration = Duration::from_millis(100);
 
@@ -38,6 +41,8 @@ impl Reporter {
     pub fn update(&self, progress: Progress) {
         match self {
             Self::Silent => {}
+            // What is over at once needs no bar, and the first guesses at the time left are wild.
+            Self::Bar(bar) if bar.elapsed() < BAR_DELAY => {}
             Self::Bar(bar) => {
                 bar.set_length(progress.total_pixels);
                 bar.set_position(progress.pixels);
