@@ -107,8 +107,8 @@ pub struct RenderArgs {
     pub reading: ReadingArgs,
 
     /// Threads; 0: one for each core
-    #[arg(long, value_name = "N", default_value_t = 0, help_heading = "Work")]
-    pub threads: usize,
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024), help_heading = "Work")]
+    pub threads: u16,
     /// Edge of a tile in pixels; the picture does not depend on it
     #[arg(long, value_name = "N", default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..=4096), help_heading = "Work")]
     pub tile: u32,

@@ -137,7 +137,7 @@ fn one(mut recipe: Recipe, mut loaded: Loaded, args: &RenderArgs, output: &Path)
     let started = Instant::now();
     let progress = |p| reporter.update(p);
     let options = Options {
-        threads: args.threads,
+        threads: args.threads.into(),
         tile_size: args.tile,
         crop: recipe.crop,
         progress: Some(&progress),

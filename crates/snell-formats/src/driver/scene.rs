@@ -8,7 +8,7 @@ use snell::scene::{
     Camera, Light, Material, Mesh, Render, SCHEMA_VERSION, Scene, Shadows, Sphere, Step, Transfer, Transform,
     WarningCode,
 };
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
 /// What a driver says. The models are not read yet.
@@ -73,6 +73,7 @@ pub fn parse(source: &Source, dialect: Option<Dialect>) -> Result<Driver, Vec<Re
         dialect: dialect.unwrap_or(recognised),
         seen: HashSet::new(),
         values: Values::default(),
+        known_materials: HashMap::new(),
         models: Vec::new(),
         transform: Vec::new(),
         cutoff: 0.0,
@@ -111,6 +112,8 @@ struct Reader {
     /// Settings that were given already.
     seen: HashSet<String>,
     values: Values,
+    /// Materials of spheres by their numbers, so that equal ones have one name.
+    known_materials: HashMap<[u64; 17], usize>,
     models: Vec<Model>,
     /// 2020: steps so far.
     transform: Vec<Transform>,
@@ -286,15 +289,12 @@ impl Reader {
             _ => {}
         }
         self.place("sphere", self.values.spheres.len(), line);
-        let known = self.values.materials.iter().position(|m| *m == material);
-        let index = known.unwrap_or_else(|| {
-            self.places.push((
-                vec!["material".into(), sphere_material(self.values.materials.len()).as_str().into()],
-                line.range(),
-            ));
+        let count = self.values.materials.len();
+        let index = *self.known_materials.entry(bits(&material)).or_insert(count);
+        if index == count {
+            self.places.push((vec!["material".into(), sphere_material(index).as_str().into()], line.range()));
             self.values.materials.push(material);
-            self.values.materials.len() - 1
-        });
+        }
         self.values.spheres.push(Sphere {
             name: None,
             center: [v[0], v[1], v[2]],
@@ -400,6 +400,16 @@ impl Reader {
         };
         Ok(Driver { dialect, scene, models, warnings: Vec::new(), places })
     }
+}
+
+/// All numbers of a material, to the bit.
+fn bits(m: &Material) -> [u64; 17] {
+    let mut bits = [0; 17];
+    let colors = [m.ka, m.kd, m.ks, m.kr, m.ko].into_iter().flat_map(Rgb::to_array);
+    for (bits, value) in bits.iter_mut().zip(colors.chain([m.spow, m.eta])) {
+        *bits = value.to_bits();
+    }
+    bits
 }
 
 fn sphere_material(index: usize) -> String {

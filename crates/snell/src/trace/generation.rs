@@ -14,7 +14,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 const GENERATION_BUDGET: usize = 1 << 16;
 
 /// A pixel with more rays than this gets no more; the rest counts as lost light.
-const RAYS_PER_PIXEL: u32 = 1 << 20;
+const RAYS_PER_PIXEL: u32 = 1 << 18;
 
 /// Sees every generation when it is done, with its rays, hits and contributions.
 pub(crate) trait Observer {

@@ -1,17 +1,14 @@
-//! The tree of boxes. `obvhs` builds it (PLOC, Benthin et al. 2024); traversal is ours, because it must be exact.
+//! The tree of boxes.
 //!
 //! The answer does not depend on the tree. Every box holds its primitives with a margin that is larger than the
 //! rounding errors of the primitive tests (see [`Bvh::build`]), and the caller decides ties at equal `t` by primitive
 //! id, so any tree, and no tree at all, finds the same hit to the last bit.
 
+mod build;
+
 use super::bounds::{Bounds, OuterBox};
 use super::{Ray, RayFrame};
 use crate::lanes::{Lanes, Mask};
-use obvhs::BvhBuildParams;
-use obvhs::bvh2::Bvh2;
-use obvhs::bvh2::leaf_collapser::collapse;
-use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
-use obvhs::ploc::PlocBuilder;
 
 /// Relative size of the margin around each primitive: 2⁻⁴⁸ of the farthest distance from which a ray can come.
 ///
@@ -20,9 +17,6 @@ use obvhs::ploc::PlocBuilder;
 /// more than all of these together with those of the slab test. The textbook discriminant of near spheres errs by more;
 /// their boxes come with that margin ([`sphere::MARGIN`](super::sphere::MARGIN)).
 const MARGIN: f64 = 1.0 / (1u64 << 48) as f64;
-
-/// Depth of the traversal stack. Two children go on it at each level; deeper trees than this are refused when built.
-const STACK: usize = 128;
 
 #[derive(Clone, Copy, Debug)]
 struct Node {
@@ -44,42 +38,10 @@ impl Bvh {
     /// Builds the tree over the boxes of all primitives, in the order of their ids. `reach` is the largest distance
     /// between a ray's origin and a primitive.
     pub fn build(boxes: &[Bounds], reach: f64) -> Self {
-        if boxes.is_empty() {
-            return Self::default();
-        }
-        let outer: Vec<obvhs::aabb::Aabb> = boxes
-            .iter()
-            .map(|b| {
-                let OuterBox { min, max } = OuterBox::around(b, reach * MARGIN);
-                obvhs::aabb::Aabb::new(min.into(), max.into())
-            })
-            .collect();
-        let params = BvhBuildParams::medium_build();
-        let ids = (0..boxes.len() as u32).collect();
-        let mut tree: Bvh2 = PlocBuilder::with_capacity(boxes.len()).build(
-            params.ploc_search_distance,
-            &outer,
-            ids,
-            params.sort_precision,
-            params.search_depth_threshold,
-        );
-        let mut optimizer = ReinsertionOptimizer::default();
-        optimizer.run(&mut tree, params.reinsertion_batch_ratio, None);
-        collapse(&mut tree, 4, params.collapse_traversal_cost);
-        let nodes = tree
-            .nodes
-            .iter()
-            .map(|n| Node {
-                bounds: OuterBox { min: n.aabb.min.into(), max: n.aabb.max.into() },
-                first: n.first_index,
-                count: n.prim_count,
-            })
-            .collect();
-        let bvh = Self { nodes, primitives: tree.primitive_indices };
-        if bvh.depth() >= STACK { Self::flat(boxes.len()) } else { bvh }
+        build::build(boxes.iter().map(|b| OuterBox::around(b, reach * MARGIN)).collect())
     }
 
-    /// No tree: one leaf with everything in it. The oracle of the tests, and the way out for a tree too deep to walk.
+    /// No tree: one leaf with everything in it, the oracle of the tests.
     pub fn flat(primitives: usize) -> Self {
         let everywhere = OuterBox { min: [f32::NEG_INFINITY; 3], max: [f32::INFINITY; 3] };
         if primitives == 0 {
@@ -89,19 +51,6 @@ impl Bvh {
             nodes: vec![Node { bounds: everywhere, first: 0, count: primitives as u32 }],
             primitives: (0..primitives as u32).collect(),
         }
-    }
-
-    fn depth(&self) -> usize {
-        let mut deepest = 0;
-        let mut stack = vec![(0usize, 1usize)];
-        while let Some((node, depth)) = stack.pop() {
-            deepest = deepest.max(depth);
-            if self.nodes[node].count == 0 {
-                let first = self.nodes[node].first as usize;
-                stack.extend([(first, depth + 1), (first + 1, depth + 1)]);
-            }
-        }
-        deepest
     }
 
     /// Bytes of the built tree.
@@ -126,7 +75,7 @@ impl Bvh {
         if !root.bounds.enter(ray.origin, frame, ray.t_min, limit).1.any() {
             return;
         }
-        let mut stack = [0u32; STACK];
+        let mut stack = [0u32; build::MAX_DEPTH];
         let mut height = 0;
         let mut node = root;
         loop {
