@@ -5,7 +5,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use serde::de::IntoDeserializer;
 use serde::de::value::{Error as ValueError, StrDeserializer};
 use snell::film::Crop;
-use snell::scene::{Integrator, Rounding, Shadows, Transfer};
+use snell::scene::{Integrator, MAX_DEPTH, Rounding, Shadows, Transfer};
 use snell_formats::driver::Dialect;
 use std::path::PathBuf;
 
@@ -86,15 +86,15 @@ pub struct RenderArgs {
     /// The fraction in 8 and 16 bit: round or truncate
     #[arg(long, value_name = "HOW", value_parser = named::<Rounding>, help_heading = "Picture")]
     pub rounding: Option<Rounding>,
-    /// Bits per channel of a PNG: 8 or 16
-    #[arg(long, value_name = "N", value_parser = ["8", "16"], default_value = "8", help_heading = "Picture")]
-    pub bits: String,
+    /// Bits per channel of a PNG: 8 (default) or 16
+    #[arg(long, value_name = "N", value_parser = bits, help_heading = "Picture")]
+    pub bits: Option<u8>,
     /// Write PPM as bytes (P6) instead of text (P3)
     #[arg(long, help_heading = "Picture")]
     pub binary: bool,
 
-    /// How many bounces may follow the camera ray
-    #[arg(long, value_name = "N", help_heading = "Light")]
+    /// How many bounces may follow the camera ray, at most 1000
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=i64::from(MAX_DEPTH)), help_heading = "Light")]
     pub depth: Option<u32>,
     /// The model of light: lecture, course2018 or course2020
     #[arg(long, value_name = "NAME", value_parser = named::<Integrator>, help_heading = "Light")]
@@ -235,6 +235,14 @@ fn dialect(text: &str) -> Result<Dialect, String> {
     let text = if text == "2017" { "2018" } else { text };
     let found = Dialect::ALL.into_iter().find(|d| d.name() == text);
     found.ok_or_else(|| format!("expected one of {}", names.join(", ")))
+}
+
+fn bits(text: &str) -> Result<u8, String> {
+    match text {
+        "8" => Ok(8),
+        "16" => Ok(16),
+        _ => Err("expected 8 or 16".to_owned()),
+    }
 }
 
 fn size(text: &str) -> Result<[u32; 2], String> {

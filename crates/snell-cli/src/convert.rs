@@ -20,8 +20,7 @@ pub fn run(args: &ConvertArgs) -> Outcome {
     };
     let mut loaded = load(&args.file, &LoadOptions::from(&args.reading)).or_fail(SCENE)?;
     let world = loaded.world().or_fail(SCENE)?;
-    loaded.warnings.iter().for_each(say::report);
-    world.warnings.iter().for_each(|w| say::report(&loaded.warning(w)));
+    say::reports(&loaded.warnings_with(&world));
 
     let folder = args.output.as_deref().and_then(Path::parent).unwrap_or(Path::new(""));
     for (mesh, path) in loaded.scene.meshes.iter_mut().zip(&loaded.mesh_paths) {

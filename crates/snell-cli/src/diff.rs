@@ -1,6 +1,7 @@
 //! `snell diff`.
 
 use crate::args::DiffArgs;
+use crate::render::same_file;
 use crate::say::{self, FAILED, Failure, OrFail, Outcome, USAGE};
 use snell::film::transfer::Encoding;
 use snell::film::{Crop, Film, Rgb};
@@ -13,6 +14,12 @@ pub fn run(args: &DiffArgs) -> Outcome {
         return Err(Failure::new(USAGE, Report::error("a tolerance is a number from 0 on")));
     }
     let format = args.output.as_deref().map(Format::of).transpose().or_fail(USAGE)?;
+    if let Some(output) = &args.output
+        && [&args.a, &args.b].iter().any(|input| same_file(input, output))
+    {
+        let report = Report::error(format!("`{}` is one of the pictures compared", output.display()));
+        return Err(Failure::new(USAGE, report.help("give the difference another name")));
+    }
     let (a, b) = (picture::read(&args.a).or_fail(FAILED)?, picture::read(&args.b).or_fail(FAILED)?);
     if (a.width, a.height) != (b.width, b.height) {
         let message = format!("the sizes differ: {} x {} and {} x {}", a.width, a.height, b.width, b.height);
@@ -31,12 +38,14 @@ pub fn run(args: &DiffArgs) -> Outcome {
     let compared = Comparison::new(&a, &differences, args.tolerance);
     say::print(&compared.describe(unit, args.tolerance))?;
     if let (Some(output), Some(format)) = (&args.output, format) {
-        let gain = if compared.max > 0.0 { 1.0 / compared.max } else { 0.0 };
+        // The largest finite difference is white; an infinite one (NaN against a number) too.
+        let finite = differences.iter().flat_map(|d| d.to_array()).filter(|d| d.is_finite()).fold(0.0, f64::max);
+        let brighten = |d: f64| if d.is_finite() { d / finite.max(f64::MIN_POSITIVE) } else { 1.0 };
         let crop = Crop { x: 0, y: 0, width: a.width as u32, height: a.height as u32 };
         let film = Film {
             full_size: [crop.width, crop.height],
             crop,
-            pixels: differences.iter().map(|&d| d * gain).collect(),
+            pixels: differences.iter().map(|d| d.to_array().map(brighten).into()).collect(),
             finished: vec![true; differences.len()],
         };
         let encoding = Encoding { transfer: Transfer::Linear, rounding: Rounding::Round };

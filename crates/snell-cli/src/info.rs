@@ -22,9 +22,8 @@ pub fn run(args: &InfoArgs) -> Outcome {
         return say::print(&loaded.source.text);
     }
     let world = loaded.world().or_fail(SCENE)?;
-    say::print(&about_scene(&loaded, &world))?;
-    loaded.warnings.iter().for_each(say::report);
-    world.warnings.iter().for_each(|w| say::report(&loaded.warning(w)));
+    say::print(&say::plain(&about_scene(&loaded, &world)))?;
+    say::reports(&loaded.warnings_with(&world));
     Ok(())
 }
 
@@ -60,7 +59,7 @@ fn about_picture(picture: &Picture, args: &InfoArgs) -> Outcome {
     let film = recipe.film_sha256.unwrap_or_else(|| "not finished".to_owned());
     let _ = writeln!(text, "film         {film}");
     let _ = writeln!(text, "again        snell render --from {}", args.file);
-    say::print(&text)
+    say::print(&say::plain(&text))
 }
 
 /// More spheres than this are counted, not listed.

@@ -5,6 +5,7 @@
 mod args;
 mod convert;
 mod diff;
+mod excerpt;
 mod info;
 mod progress;
 mod recipe;
@@ -36,9 +37,7 @@ fn main() -> ExitCode {
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(Failure { code, reports }) => {
-            for report in &reports {
-                say::report(report);
-            }
+            say::reports(&reports);
             ExitCode::from(code)
         }
     }

@@ -8,7 +8,7 @@ use snell::scene::{Integrator, Rounding, Scene, Shadows, Transfer};
 use snell_formats::driver::Dialect;
 use snell_formats::load::{Kind, Loaded, ModelFile, load_text};
 use snell_formats::{LoadOptions, Report, Source, load};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// How a picture is made: the text of its scene and all settings besides.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -42,7 +42,13 @@ pub struct Recipe {
     pub transfer: Option<Transfer>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rounding: Option<Rounding>,
-    /// Models that the scene reads, and their content.
+    /// Bits per channel of a PNG, 8 if left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bits: Option<u8>,
+    /// Folders in which models were looked for first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub search: Vec<PathBuf>,
+    /// Models that the scene reads, in the order of reading, and their content.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub models: Vec<ModelFile>,
     /// SHA-256 of the finished film's numbers.
@@ -55,7 +61,7 @@ impl Recipe {
     pub fn of(name: &str, args: &RenderArgs) -> Result<(Self, Loaded), Failure> {
         let options = LoadOptions::from(&args.reading);
         let loaded = load(name, &options).or_fail(SCENE)?;
-        let folder = std::path::absolute(&loaded.folder).unwrap_or_else(|_| loaded.folder.clone());
+        let folder = absolute(&loaded.folder);
         let recipe = Self {
             snell: env!("CARGO_PKG_VERSION").to_owned(),
             name: name.to_owned(),
@@ -72,7 +78,13 @@ impl Recipe {
             shadows: args.shadows,
             transfer: args.transfer,
             rounding: args.rounding,
-            models: loaded.models.iter().map(absolute).collect(),
+            bits: args.bits,
+            search: args.reading.search.iter().map(|folder| absolute(folder)).collect(),
+            models: loaded
+                .models
+                .iter()
+                .map(|m| ModelFile { path: absolute(&m.path), sha256: m.sha256.clone() })
+                .collect(),
             film_sha256: None,
         };
         Ok((recipe, loaded))
@@ -80,22 +92,31 @@ impl Recipe {
 
     /// Reads the scene of a recipe again. Its models must be what they were.
     pub fn load(&self, search: &[PathBuf]) -> Result<Loaded, Failure> {
-        let known = |model: &ModelFile| model.path.parent().map(PathBuf::from);
+        let dialect = match self.dialect.as_deref() {
+            None => None,
+            Some(name) => Some(Dialect::ALL.into_iter().find(|d| d.name() == name).ok_or_else(|| {
+                Failure::new(SCENE, Report::error(format!("the picture was made with an unknown dialect `{name}`")))
+            })?),
+        };
         let options = LoadOptions {
-            search: search.iter().cloned().chain(self.models.iter().filter_map(known)).collect(),
-            dialect: Dialect::ALL.into_iter().find(|d| Some(d.name()) == self.dialect.as_deref()),
+            search: search.iter().chain(&self.search).cloned().collect(),
+            dialect,
             set: self.set.clone(),
         };
         let source = Source::new(self.name.as_str(), self.text.as_str());
         let loaded = load_text(source, self.kind, &self.folder, &options).or_fail(SCENE)?;
-        let changed = loaded.models.iter().zip(&self.models).find(|(now, then)| now.sha256 != then.sha256);
-        if let Some((now, then)) = changed {
-            let message = format!("the model `{}` has changed since the picture was made", now.path.display());
-            let help = format!(
-                "it was {} with SHA-256 {}; show where that is with --search DIR",
-                then.path.display(),
-                then.sha256
-            );
+        let count = loaded.models.len().max(self.models.len());
+        for i in 0..count {
+            let (now, then) = (loaded.models.get(i), self.models.get(i));
+            if now.map(|m| &m.sha256) == then.map(|m| &m.sha256) {
+                continue;
+            }
+            let path = now.or(then).map(|m| m.path.display().to_string()).unwrap_or_default();
+            let was = then.map_or("it was not there".to_owned(), |m| {
+                format!("it was {} with SHA-256 {}", m.path.display(), m.sha256)
+            });
+            let message = format!("the model `{path}` has changed since the picture was made");
+            let help = format!("{was}; show where that is with --search DIR");
             return Err(Failure::new(SCENE, Report::error(message).help(help)));
         }
         Ok(loaded)
@@ -115,9 +136,8 @@ impl Recipe {
     }
 }
 
-fn absolute(model: &ModelFile) -> ModelFile {
-    let path = std::path::absolute(&model.path).unwrap_or_else(|_| model.path.clone());
-    ModelFile { path, sha256: model.sha256.clone() }
+fn absolute(path: &Path) -> PathBuf {
+    std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
 }
 
 /// Widens the bounds so that pixels are square, if the new size has neither the old size's shape nor the bounds'.
@@ -126,7 +146,8 @@ fn widen(bounds: &mut [f64; 4], before: [u32; 2], size: [u32; 2]) -> Option<Stri
     let (width, height) = (right - left, top - bottom);
     let [w, h] = size.map(f64::from);
     let same_shape = u64::from(before[0]) * u64::from(size[1]) == u64::from(before[1]) * u64::from(size[0]);
-    if same_shape || w * height.abs() == h * width.abs() {
+    let no_area = width == 0.0 || height == 0.0; // which is an error, and stays one
+    if same_shape || no_area || w * height.abs() == h * width.abs() {
         return None;
     }
     // Pixels sit on the corners of the grid: n of them span n − 1 steps. A single pixel spans nothing.

@@ -20,6 +20,16 @@ use std::time::Instant;
 
 /// Set by ^C.
 static CANCEL: AtomicBool = AtomicBool::new(false);
+/// Is there a picture to save? Before, ^C ends the program at once.
+static RENDERING: AtomicBool = AtomicBool::new(false);
+
+/// The first ^C stops the render and saves what is done; before a render, or the second time, it ends at once.
+fn interrupt() {
+    if !RENDERING.load(Ordering::Relaxed) || CANCEL.swap(true, Ordering::Relaxed) {
+        disk::discard_pending();
+        std::process::exit(INTERRUPTED.into());
+    }
+}
 
 pub fn run(args: &RenderArgs) -> Outcome {
     let names: Vec<String> = match &args.from {
@@ -27,13 +37,7 @@ pub fn run(args: &RenderArgs) -> Outcome {
         None => args.scenes.clone(),
     };
     let outputs = outputs(args, &names)?;
-    // The first ^C stops and saves; the second one stops at once.
-    let handler = || {
-        if CANCEL.swap(true, Ordering::Relaxed) {
-            std::process::exit(INTERRUPTED.into());
-        }
-    };
-    if ctrlc::set_handler(handler).is_err() {
+    if ctrlc::set_handler(interrupt).is_err() {
         eprintln!("note: ^C cannot be caught here; it would lose the picture");
     }
     let mut failures = Vec::new();
@@ -46,7 +50,7 @@ pub fn run(args: &RenderArgs) -> Outcome {
             Ok(()) => {}
             // One bad scene of many does not keep the others from being drawn.
             Err(failure) if names.len() > 1 && failure.code != INTERRUPTED => {
-                failure.reports.iter().for_each(say::report);
+                say::reports(&failure.reports);
                 failures.push(failure.code);
             }
             Err(failure) => return Err(failure),
@@ -61,22 +65,33 @@ pub fn run(args: &RenderArgs) -> Outcome {
     }
 }
 
-/// Where each picture goes.
+/// Where each picture goes. What is sure to fail later fails here, before any work is done.
 fn outputs(args: &RenderArgs, names: &[String]) -> Result<Vec<PathBuf>, Failure> {
     let ends_with_slash = |p: &Path| p.as_os_str().to_string_lossy().ends_with(['/', '\\']);
-    let folder = match &args.output {
-        Some(path) if names.len() == 1 && !path.is_dir() && !ends_with_slash(path) => {
+    let outputs = match &args.output {
+        Some(path) if !path.is_dir() && !ends_with_slash(path) && (names.len() == 1 || Format::of(path).is_ok()) => {
             Format::of(path).or_fail(USAGE)?;
-            if names.iter().any(|n| same_file(Path::new(n), path)) && args.from.is_none() {
-                let report = Report::error(format!("`{}` is the scene itself", path.display()));
-                return Err(Failure::new(USAGE, report.help("give the picture another name")));
+            if names.len() > 1 {
+                let message = format!("{} scenes cannot be one picture `{}`", names.len(), path.display());
+                return Err(Failure::new(USAGE, Report::error(message).help("name a folder, like -o out/")));
             }
-            return Ok(vec![path.clone()]);
+            vec![path.clone()]
         }
-        Some(folder) => folder.clone(),
-        None => PathBuf::from("."),
+        folder => in_folder(folder.as_deref().unwrap_or(Path::new(".")), args, names)?,
     };
-    if let Err(e) = std::fs::create_dir_all(&folder) {
+    for output in &outputs {
+        if names.iter().any(|name| same_file(Path::new(name), output)) {
+            let message = format!("`{}` is what is read", output.display());
+            return Err(Failure::new(USAGE, Report::error(message).help("give the new picture another name")));
+        }
+        disk::check_writable(output).or_fail(FAILED)?;
+    }
+    Ok(outputs)
+}
+
+/// A picture for each scene in a folder, which is made if need be.
+fn in_folder(folder: &Path, args: &RenderArgs, names: &[String]) -> Result<Vec<PathBuf>, Failure> {
+    if let Err(e) = std::fs::create_dir_all(folder) {
         let report = Report::error(format!("cannot make the folder `{}`: {e}", folder.display()));
         return Err(Failure::new(if folder.exists() { USAGE } else { FAILED }, report));
     }
@@ -99,7 +114,8 @@ fn outputs(args: &RenderArgs, names: &[String]) -> Result<Vec<PathBuf>, Failure>
     Ok(outputs)
 }
 
-fn same_file(a: &Path, b: &Path) -> bool {
+/// Are these two names of one file?
+pub fn same_file(a: &Path, b: &Path) -> bool {
     matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
 }
 
@@ -128,10 +144,17 @@ fn one(mut recipe: Recipe, mut loaded: Loaded, args: &RenderArgs, output: &Path)
         .chain(world.warnings.iter().map(|w| loaded.warning(w)))
         .chain(widened)
         .collect();
-    for warning in &warnings {
+    for warning in warnings.iter().take(say::SHOWN) {
         warn(warning, args);
     }
+    if !args.quiet && args.progress == ProgressKind::Auto {
+        say::more(warnings.len());
+    }
     enough_memory(&world, recipe.crop)?;
+    if Format::of(output).or_fail(USAGE)? == Format::Exr && world.camera.size.iter().any(|&n| n > i32::MAX as u32) {
+        let report = Report::error("an EXR picture has at most 2147483647 pixels in a row or column");
+        return Err(Failure::new(USAGE, report));
+    }
 
     let reporter = Reporter::new(args.progress, args.quiet, &recipe.name);
     let started = Instant::now();
@@ -144,12 +167,17 @@ fn one(mut recipe: Recipe, mut loaded: Loaded, args: &RenderArgs, output: &Path)
         cancel: Some(&CANCEL),
         ..Options::default()
     };
+    RENDERING.store(true, Ordering::Relaxed);
     let rendered = render(&world, &options).map_err(|e| {
         let code = if matches!(e, RenderError::CropOutside { .. }) { USAGE } else { SCENE };
         Failure::new(code, Report::error(e.to_string()))
     })?;
     let seconds = started.elapsed().as_secs_f64();
     reporter.finish();
+    if !rendered.film.finished.contains(&true) {
+        // An empty picture would only take the place of what is there.
+        return Err(Failure { code: INTERRUPTED, reports: Vec::new() });
+    }
 
     let finished = rendered.film.is_finished();
     let before = recipe.film_sha256.take();
@@ -157,13 +185,17 @@ fn one(mut recipe: Recipe, mut loaded: Loaded, args: &RenderArgs, output: &Path)
         recipe.film_sha256 = Some(disk::sha256(rendered.film.bytes()));
     }
     let format = match Format::of(output).or_fail(USAGE)? {
-        Format::Png { .. } => Format::Png { sixteen_bit: args.bits == "16" },
+        Format::Png { .. } => Format::Png { sixteen_bit: recipe.bits == Some(16) },
         Format::Ppm { .. } => Format::Ppm { binary: args.binary },
         other => other,
     };
     let encoding = Encoding { transfer: world.render.transfer, rounding: world.render.rounding };
     let text = serde_json::to_string(&recipe).unwrap_or_default();
-    picture::write(output, format, &rendered.film, encoding, Some(&text)).or_fail(FAILED)?;
+    let written = picture::write(output, format, &rendered.film, encoding, Some(&text));
+    RENDERING.store(false, Ordering::Relaxed);
+    if let Err(report) = written {
+        return Err(Failure::new(FAILED, rescue(report, output, format, &rendered, encoding, &text)));
+    }
     summary(&recipe, &world, &rendered, args, output, seconds);
     if !finished {
         return Err(Failure { code: INTERRUPTED, reports: Vec::new() });
@@ -172,11 +204,33 @@ fn one(mut recipe: Recipe, mut loaded: Loaded, args: &RenderArgs, output: &Path)
         && before != now
     {
         let message =
-            format!("the picture is not the same: film {} before, {} now", &before[..12.min(before.len())], &now[..12]);
+            format!("the picture is not the same: film {} before, {} now", short_hash(before), short_hash(now));
         let help = format!("it was made by Snell {}", recipe.snell);
         return Err(Failure::new(FAILED, Report::error(message).help(help)));
     }
     Ok(())
+}
+
+/// The picture could not be written where it should go: it is kept elsewhere if possible, so that no work is lost.
+fn rescue(
+    report: Report,
+    output: &Path,
+    format: Format,
+    rendered: &Rendered,
+    encoding: Encoding,
+    recipe: &str,
+) -> Report {
+    let name = output.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+    let elsewhere = std::env::temp_dir().join(format!("snell-{}-{name}", std::process::id()));
+    match picture::write(&elsewhere, format, &rendered.film, encoding, Some(recipe)) {
+        Ok(()) => report.help(format!("the picture is kept as {}", elsewhere.display())),
+        Err(_) => report,
+    }
+}
+
+/// The first digits of a hash, for people.
+fn short_hash(hash: &str) -> &str {
+    hash.get(..12).unwrap_or(hash)
 }
 
 fn warn(report: &Report, args: &RenderArgs) {
@@ -224,7 +278,7 @@ fn summary(recipe: &Recipe, world: &World, rendered: &Rendered, args: &RenderArg
         return;
     }
     let total = rays.total() as f64;
-    let state = hash.map_or("stopped before it was finished".to_owned(), |h| format!("film {}", &h[..12]));
+    let state = hash.map_or("stopped before it was finished".to_owned(), |h| format!("film {}", short_hash(h)));
     eprintln!(
         "{}: {} x {}, {} rays in {seconds:.2} s ({} rays/s), {state}",
         output.display(),
@@ -233,7 +287,9 @@ fn summary(recipe: &Recipe, world: &World, rendered: &Rendered, args: &RenderArg
         short(total),
         short(total / seconds.max(1e-9)),
     );
-    if lost.rays > 0 {
+    if lost.rays > 0 && world.render.max_depth == 0 {
+        eprintln!("  depth 0: mirrors and glass send no rays on");
+    } else if lost.rays > 0 {
         eprintln!(
             "  {}: depth {} ended {} branches; what lies behind them weighs {:.2} % of a pixel on average, \
              {:.1} % in pixel {worst_x},{worst_y}",
@@ -249,8 +305,11 @@ fn summary(recipe: &Recipe, world: &World, rendered: &Rendered, args: &RenderArg
 /// Refuses a film that would not fit into the memory that is free, where the system says how much that is.
 fn enough_memory(world: &World, crop: Option<Crop>) -> Outcome {
     let [width, height] = crop.map_or(world.camera.size, |c| [c.width, c.height]);
-    // Besides the film, the integers of the file are made before they are written.
-    let needed = u64::from(width).saturating_mul(u64::from(height)).saturating_mul(BYTES_PER_PIXEL + 8);
+    if width > world.camera.size[0] || height > world.camera.size[1] {
+        // Such a crop does not fit, which is said later.
+        return Ok(());
+    }
+    let needed = u64::from(width).saturating_mul(u64::from(height)).saturating_mul(BYTES_PER_PIXEL);
     match free_memory() {
         Some(free) if needed > free => {
             let gib = |bytes: u64| bytes as f64 / f64::from(1 << 30);

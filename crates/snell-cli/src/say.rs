@@ -1,5 +1,6 @@
 //! Talking to people: results on stdout, everything else on stderr.
 
+use crate::excerpt::Excerpt;
 use miette::{GraphicalReportHandler, GraphicalTheme, ThemeCharacters, ThemeStyles};
 use snell_formats::Report;
 use std::io::{IsTerminal, Write};
@@ -51,6 +52,24 @@ pub fn colored() -> bool {
     std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|v| v.is_empty())
 }
 
+/// More reports of one kind than this are counted, not shown.
+pub const SHOWN: usize = 20;
+
+/// Writes reports to stderr, the first ones in full.
+pub fn reports(reports: &[Report]) {
+    for shown in &reports[..reports.len().min(SHOWN)] {
+        report(shown);
+    }
+    more(reports.len());
+}
+
+/// Says how many were not shown.
+pub fn more(count: usize) {
+    if count > SHOWN {
+        eprintln!("… and {} more like these", count - SHOWN);
+    }
+}
+
 /// Writes a report with its place in the source to stderr.
 pub fn report(report: &Report) {
     let styles = if colored() { ThemeStyles::ansi() } else { ThemeStyles::none() };
@@ -58,10 +77,15 @@ pub fn report(report: &Report) {
         ThemeCharacters { error: "error:".to_owned(), warning: "warning:".to_owned(), ..ThemeCharacters::unicode() };
     let handler = GraphicalReportHandler::new_themed(GraphicalTheme { characters, styles }).with_width(100);
     let mut text = String::new();
-    if handler.render_report(&mut text, report).is_err() {
-        text.clone_from(&report.message);
+    if handler.render_report(&mut text, &Excerpt::of(report)).is_err() {
+        text = plain(&report.to_string());
     }
     eprintln!("{}", text.trim());
+}
+
+/// Text from a file without the characters that would steer a terminal.
+pub fn plain(text: &str) -> String {
+    text.chars().map(|c| if c.is_control() && c != '\n' && c != '\t' { '\u{fffd}' } else { c }).collect()
 }
 
 /// Writes text to stdout. A reader that has gone away (`| head`) is no error.

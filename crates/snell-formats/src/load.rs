@@ -14,6 +14,9 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+/// A scene with more problems than this has them counted, not listed.
+pub const MOST_PROBLEMS: usize = 15;
+
 /// How to read a scene.
 #[derive(Clone, Debug, Default)]
 pub struct LoadOptions {
@@ -162,6 +165,8 @@ pub fn load_text(source: Source, kind: Kind, folder: &Path, options: &LoadOption
         rule: rule(dialect),
         objs: HashMap::new(),
         mtls: HashMap::new(),
+        named: HashMap::new(),
+        numbers: HashMap::new(),
         files: Vec::new(),
         warnings,
     };
@@ -218,12 +223,27 @@ impl Loaded {
         self.places.put(Report::warning(warning.code, warning.message.clone()), &warning.place)
     }
 
+    /// All warnings, of the files and of the compiled scene, each at its place.
+    pub fn warnings_with(&self, world: &World) -> Vec<Report> {
+        let located = world.warnings.iter().take(MOST_PROBLEMS).map(|w| self.warning(w));
+        let unlocated = world.warnings.iter().skip(MOST_PROBLEMS);
+        let unlocated = unlocated.map(|w| Report::warning(w.code, w.message.clone()));
+        self.warnings.iter().cloned().chain(located).chain(unlocated).collect()
+    }
+
     /// Compiles the scene.
     ///
     /// # Errors
-    /// Everything that is wrong with it, each at its place.
+    /// What is wrong with it, each at its place; from [`MOST_PROBLEMS`] on only their number.
     pub fn world(&self) -> Result<World, Vec<Report>> {
-        World::new(&self.scene).map_err(|problems| problems.iter().map(|p| self.report(p)).collect())
+        World::new(&self.scene).map_err(|problems| {
+            let mut reports: Vec<Report> = problems.iter().take(MOST_PROBLEMS).map(|p| self.report(p)).collect();
+            if problems.len() > MOST_PROBLEMS {
+                let more = problems.len() - MOST_PROBLEMS;
+                reports.push(Report::error(format!("{more} more problems like these")));
+            }
+            reports
+        })
     }
 }
 
@@ -232,8 +252,11 @@ struct ModelReader<'a> {
     folder: &'a Path,
     search: &'a [PathBuf],
     rule: MtlRule,
-    objs: HashMap<PathBuf, (Arc<TriangleMesh>, Vec<String>)>,
+    objs: HashMap<PathBuf, (Arc<TriangleMesh>, Arc<Libraries>)>,
     mtls: HashMap<PathBuf, Vec<MtlMaterial>>,
+    /// Scene materials by model and slot, and the number that the next one of a name gets.
+    named: HashMap<(PathBuf, String), String>,
+    numbers: HashMap<String, usize>,
     files: Vec<ModelFile>,
     warnings: Vec<Report>,
 }
@@ -254,16 +277,22 @@ impl ModelReader<'_> {
             }
             let ObjModel { mesh, libraries, warnings } = parse_obj(&self.read_text(&path)?)?;
             self.warnings.extend(warnings);
+            let libraries = Arc::new(self.libraries(&libraries, &path)?);
             self.objs.insert(path.clone(), (Arc::new(mesh), libraries));
         }
         let (mesh, libraries) = self.objs[&path].clone();
         if loaded.scene.meshes[index].material.is_none() {
             for slot in &mesh.slots {
-                if !loaded.scene.meshes[index].materials.contains_key(slot) {
-                    let material = self.material(slot, &path, &libraries, &loaded.places, &place)?;
-                    let name = add_material(&mut loaded.scene, &path, &material.0, material.1);
-                    loaded.scene.meshes[index].materials.insert(slot.clone(), name);
+                if loaded.scene.meshes[index].materials.contains_key(slot) {
+                    continue;
                 }
+                let key = (path.clone(), slot.clone());
+                if !self.named.contains_key(&key) {
+                    let (name, material) = self.material(slot, &path, &libraries, &loaded.places, &place)?;
+                    let name = self.add_material(&mut loaded.scene, &path, &name, material);
+                    self.named.insert(key.clone(), name);
+                }
+                loaded.scene.meshes[index].materials.insert(slot.clone(), self.named[&key].clone());
             }
         }
         loaded.scene.meshes[index].geometry = Some(mesh);
@@ -271,10 +300,9 @@ impl ModelReader<'_> {
     }
 
     fn read_text(&mut self, path: &Path) -> Result<Source, Report> {
-        let source = disk::read_text(path, disk::MAX_MODEL_BYTES)?;
         let bytes = disk::read(path, disk::MAX_MODEL_BYTES)?;
-        self.files.push(ModelFile { path: path.to_owned(), sha256: disk::sha256([bytes]) });
-        Ok(source)
+        self.files.push(ModelFile { path: path.to_owned(), sha256: disk::sha256([&bytes]) });
+        Ok(disk::text(path, &bytes))
     }
 
     /// The material that a model calls `slot`: from its libraries, else the only one of an `.mtl` of the same name, else
@@ -283,26 +311,20 @@ impl ModelReader<'_> {
         &mut self,
         slot: &str,
         model: &Path,
-        libraries: &[String],
+        libraries: &Libraries,
         places: &Places,
         place: &[Step],
     ) -> Result<(String, Material), Report> {
-        let mut missing = Vec::new();
-        for library in libraries {
-            match self.library(library, model)? {
-                Some(materials) => {
-                    if let Some(m) = materials.iter().find(|m| m.name == slot) {
-                        return Ok((m.name.clone(), m.material(self.rule)));
-                    }
-                }
-                None => missing.push(format!("`{library}`")),
-            }
+        if let Some(m) = libraries.materials.get(slot) {
+            return Ok((m.name.clone(), m.material(self.rule)));
         }
+        let missing = &libraries.missing;
         let same_name = model.with_extension("mtl").file_name().map(|n| n.to_string_lossy().into_owned());
-        if let Some(materials) = self.library(&same_name.unwrap_or_default(), model)?
-            && let [only] = materials.as_slice()
+        let rule = self.rule;
+        if let Some(path) = self.find_library(&same_name.unwrap_or_default(), model)
+            && let [only] = self.read_library(&path)?
         {
-            return Ok((only.name.clone(), only.material(self.rule)));
+            return Ok((only.name.clone(), only.material(rule)));
         }
         let why = match (slot, missing.is_empty()) {
             (_, false) => format!("its material library {} is not there", missing.join(", ")),
@@ -316,47 +338,68 @@ impl ModelReader<'_> {
         Ok((gray.name.clone(), gray.material(self.rule)))
     }
 
-    /// The materials of a library that a model names; `None` if it is nowhere.
-    fn library(&mut self, name: &str, model: &Path) -> Result<Option<Vec<MtlMaterial>>, Report> {
-        let beside = model.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        let search = |name: &str| {
-            find(name, beside, self.search).or_else(|_| find(name, self.folder, &[])).ok().map(|found| found.path)
-        };
-        // One name with spaces, or several names.
-        let whole = search(name);
-        let paths = match whole {
-            Some(path) => vec![path],
-            None => name.split_whitespace().filter_map(search).collect(),
-        };
-        let mut materials = Vec::new();
-        for path in &paths {
-            if !self.mtls.contains_key(path) {
-                let (read, warnings) = parse_mtl(&self.read_text(path)?)?;
-                self.warnings.extend(warnings);
-                self.mtls.insert(path.clone(), read);
+    /// The materials of the libraries that a model names.
+    fn libraries(&mut self, names: &[String], model: &Path) -> Result<Libraries, Report> {
+        let mut libraries = Libraries::default();
+        for name in names {
+            // One name with spaces, or several names.
+            let paths: Vec<PathBuf> = match self.find_library(name, model) {
+                Some(path) => vec![path],
+                None => name.split_whitespace().filter_map(|word| self.find_library(word, model)).collect(),
+            };
+            if paths.is_empty() {
+                libraries.missing.push(format!("`{name}`"));
             }
-            materials.extend(self.mtls[path].iter().cloned());
+            for path in &paths {
+                for material in self.read_library(path)? {
+                    // Of two materials of one name the first counts.
+                    libraries.materials.entry(material.name.clone()).or_insert_with(|| material.clone());
+                }
+            }
         }
-        Ok((!paths.is_empty()).then_some(materials))
+        Ok(libraries)
     }
-}
 
-/// Adds a material under a name that tells where it is from, or finds the same one again.
-fn add_material(scene: &mut Scene, model: &Path, name: &str, material: Material) -> String {
-    let stem = model.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
-    // A name that needs no quotes in a scene file and no care in `--set`.
-    let plain: String =
-        format!("{stem}_{name}").chars().map(|c| if c.is_ascii_alphanumeric() || c == '-' { c } else { '_' }).collect();
-    for number in 1.. {
-        let candidate = if number == 1 { plain.clone() } else { format!("{plain}_{number}") };
-        match scene.materials.get(&candidate) {
-            Some(known) if *known == material => return candidate,
-            Some(_) => {}
-            None => {
+    fn find_library(&mut self, name: &str, model: &Path) -> Option<PathBuf> {
+        let beside = model.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let found = find(name, beside, self.search).or_else(|_| find(name, self.folder, &[])).ok()?;
+        if !self.mtls.contains_key(&found.path) {
+            self.warnings.extend(found.warning);
+        }
+        Some(found.path)
+    }
+
+    fn read_library(&mut self, path: &Path) -> Result<&[MtlMaterial], Report> {
+        if !self.mtls.contains_key(path) {
+            let (read, warnings) = parse_mtl(&self.read_text(path)?)?;
+            self.warnings.extend(warnings);
+            self.mtls.insert(path.to_owned(), read);
+        }
+        Ok(&self.mtls[path])
+    }
+
+    /// Adds a material under a name that tells where it is from.
+    fn add_material(&mut self, scene: &mut Scene, model: &Path, name: &str, material: Material) -> String {
+        let stem = model.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
+        // A name that needs no quotes in a scene file and no care in `--set`.
+        let plain: String = format!("{stem}_{name}")
+            .chars()
+            .map(|c| if c.is_ascii_alphanumeric() || c == '-' { c } else { '_' })
+            .collect();
+        loop {
+            let number = self.numbers.entry(plain.clone()).and_modify(|n| *n += 1).or_insert(1);
+            let candidate = if *number == 1 { plain.clone() } else { format!("{plain}_{number}") };
+            if !scene.materials.contains_key(&candidate) {
                 scene.materials.insert(candidate.clone(), material);
                 return candidate;
             }
         }
     }
-    plain
+}
+
+/// The materials that a model can name, and the libraries that are nowhere.
+#[derive(Debug, Default)]
+struct Libraries {
+    materials: HashMap<String, MtlMaterial>,
+    missing: Vec<String>,
 }

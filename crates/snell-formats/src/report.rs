@@ -1,6 +1,5 @@
 //! Errors and warnings with a place in a file.
 
-use miette::{Diagnostic, LabeledSpan, Severity, SourceCode};
 use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
@@ -15,9 +14,11 @@ pub struct Source {
 }
 
 impl Source {
-    /// A text with a name.
+    /// A text with a name. Lines end with LF from here on, whatever they ended with.
     pub fn new(name: impl Into<Arc<str>>, text: impl Into<Arc<str>>) -> Self {
-        Self { name: name.into(), text: text.into() }
+        let text: Arc<str> = text.into();
+        let text = if text.contains('\r') { text.replace("\r\n", "\n").replace('\r', "\n").into() } else { text };
+        Self { name: name.into(), text }
     }
 
     /// Line and column of a byte, both from 1; columns count characters.
@@ -40,13 +41,12 @@ pub struct Report {
     pub place: Option<(Source, Range<usize>)>,
     /// For a warning its code and name, like `W001 invisible-sphere`; `None` for an error.
     pub warning: Option<&'static str>,
-    miette_source: Option<miette::NamedSource<Arc<str>>>,
 }
 
 impl Report {
     /// An error without a place.
     pub fn error(message: impl Into<String>) -> Self {
-        Self { message: message.into(), help: None, place: None, warning: None, miette_source: None }
+        Self { message: message.into(), help: None, place: None, warning: None }
     }
 
     /// A warning without a place.
@@ -59,7 +59,6 @@ impl Report {
     pub fn at(mut self, source: &Source, range: Range<usize>) -> Self {
         let end = source.text.len();
         let range = range.start.min(end)..range.end.clamp(range.start.min(end), end);
-        self.miette_source = Some(miette::NamedSource::new(&*source.name, source.text.clone()));
         self.place = Some((source.clone(), range));
         self
     }
@@ -82,22 +81,6 @@ impl fmt::Display for Report {
 }
 
 impl std::error::Error for Report {}
-
-impl Diagnostic for Report {
-    fn severity(&self) -> Option<Severity> {
-        Some(if self.warning.is_some() { Severity::Warning } else { Severity::Error })
-    }
-    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
-        self.help.as_ref().map(|help| Box::new(help) as Box<dyn fmt::Display>)
-    }
-    fn source_code(&self) -> Option<&dyn SourceCode> {
-        self.miette_source.as_ref().map(|source| source as &dyn SourceCode)
-    }
-    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
-        let (_, range) = self.place.as_ref()?;
-        Some(Box::new(std::iter::once(LabeledSpan::underline(range.clone()))))
-    }
-}
 
 /// Where several things can be wrong, one of them.
 impl From<Report> for Vec<Report> {
@@ -129,6 +112,7 @@ mod tests {
         assert_eq!(source.line_column(5), (2, 2), "ü has two bytes and one column");
         assert_eq!(source.line_column(4), (2, 1), "inside ü is ü");
         assert_eq!(source.line_column(99), (3, 1));
+        assert_eq!(&*Source::new("x", "a\r\nb\rc\n").text, "a\nb\nc\n");
     }
 
     #[test]

@@ -18,12 +18,12 @@ pub(crate) struct Line<'a> {
     pub rest: Vec<Word<'a>>,
 }
 
-/// The lines of a text, without comments and blank ones. CR, LF and CRLF end a line.
+/// The lines of a text, without comments and blank ones.
 pub(crate) fn lines(source: &Source) -> Vec<Line<'_>> {
     let text: &str = &source.text;
     let mut lines = Vec::new();
     let mut start = 0;
-    for line in text.split_inclusive(['\n', '\r']) {
+    for line in text.split_inclusive('\n') {
         let content = line.split('#').next().unwrap_or_default();
         let mut words = words(content, start);
         if let Some(keyword) = words.next() {

@@ -148,7 +148,7 @@ fn the_recorded_tree_of_every_pixel_adds_up_to_the_film() {
         let [width, height] = scene.render.size;
         for y in 0..height {
             for x in 0..width {
-                let (radiance, tree) = trace_pixel(&world, x, y);
+                let (radiance, tree) = trace_pixel(&world, x, y).unwrap();
                 let film = rendered.film.pixels[(y * width + x) as usize];
                 assert_eq!((tree.sum(), radiance), (film, film), "{name} at {x},{y}");
                 for (i, node) in tree.nodes.iter().enumerate() {
@@ -196,7 +196,7 @@ fn a_generation_that_is_split_changes_nothing() {
     let largest = whole.statistics.depth.iter().max().copied().unwrap();
     assert!(largest > 1 << 17, "one tile, a budget of 2^16 rays, and not split: {:?}", whole.statistics.depth);
     for (x, y) in [(12, 12), (5, 20), (18, 7)] {
-        let (alone, _) = trace_pixel(&world, x, y);
+        let (alone, _) = trace_pixel(&world, x, y).unwrap();
         assert_eq!(alone, whole.film.pixels[(y * 24 + x) as usize]);
     }
     let small = render(&world, &Options { tile_size: 8, ..Options::default() }).unwrap();

@@ -16,6 +16,7 @@
 //!
 //! let scene = Scene {
 //!     snell: 1,
+//!     schema: None,
 //!     ambient: Rgb::gray(0.2),
 //!     eta_outside: 1.0,
 //!     render: Render {

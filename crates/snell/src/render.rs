@@ -118,11 +118,14 @@ pub fn render(world: &World, options: &Options<'_>) -> Result<Rendered, RenderEr
     Ok(shared.result.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner))
 }
 
-/// Traces one pixel and writes down every ray. The sum of the tree is the film's value, bit for bit.
-pub fn trace_pixel(world: &World, x: u32, y: u32) -> (Rgb, RayTree) {
+/// Traces one pixel, column and row from the top left, and writes down every ray. The sum of the tree is the film's value,
+/// bit for bit. `None` where the picture has no such pixel.
+pub fn trace_pixel(world: &World, x: u32, y: u32) -> Option<(Rgb, RayTree)> {
+    let [width, height] = world.camera.size;
     let mut tracer = Tracer::<f64, _>::new(world, None, Recorder::default());
-    let radiance = tracer.trace(&[(x, y)]).and_then(|p| p.first().copied()).unwrap_or_default();
-    (radiance, tracer.observer.tree)
+    let pixel = (x < width && y < height).then_some([(x, y)])?;
+    let radiance = tracer.trace(&pixel)?.first().copied()?;
+    Some((radiance, tracer.observer.tree))
 }
 
 struct Shared<'a> {
@@ -142,7 +145,12 @@ impl Shared<'_> {
             return;
         }
         // One worker per thread of the pool. Without a pool (WASM has no threads) the caller does the work.
-        match rayon::ThreadPoolBuilder::new().num_threads(self.options.threads).build() {
+        let threads = match self.options.threads {
+            0 => 0,
+            // More threads than tiles have nothing to do.
+            asked => asked.min(usize::try_from(self.tiles()).unwrap_or(asked)),
+        };
+        match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
             Ok(pool) => {
                 pool.broadcast(|_| self.worker::<L>());
             }
@@ -150,12 +158,19 @@ impl Shared<'_> {
         }
     }
 
+    fn tile_size(&self) -> u64 {
+        u64::from(self.options.tile_size.max(1))
+    }
+
+    fn tiles(&self) -> u64 {
+        u64::from(self.crop.width).div_ceil(self.tile_size()) * u64::from(self.crop.height).div_ceil(self.tile_size())
+    }
+
     fn worker<L: Lanes>(&self) {
         let cancel = self.options.cancel;
         let mut tracer = Tracer::<L, ()>::new(self.world, cancel, ());
-        let size = u64::from(self.options.tile_size.max(1));
+        let (size, tiles) = (self.tile_size(), self.tiles());
         let columns = u64::from(self.crop.width).div_ceil(size);
-        let tiles = columns * u64::from(self.crop.height).div_ceil(size);
         let mut pixels = Vec::new();
         let mut rays_before = 0;
         loop {

@@ -84,9 +84,11 @@ fn evidence<'a>(line: &'a Line<'a>) -> Option<Evidence<'a>> {
         "model" if numbers >= 9 => found(&[Course2019], DECIDES),
         "model" => found(&[Course2018, Lecture], DECIDES),
         "sphere" => match numbers {
-            13 => found(&[Course2018, Lecture], DECIDES),
+            13 => found(&[Course2018, Lecture], HINTS),
             17 => found(&[Course2019, Course2020], DECIDES),
             20 | 21 => found(&[Lecture], DECIDES),
+            // One number short or too many: an error in any year, to be told in the words of the likeliest.
+            18 | 19 | 22 => found(&[Lecture], HINTS),
             _ => None,
         },
         "bounds" if numbers == 4 => {

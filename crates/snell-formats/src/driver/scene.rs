@@ -39,6 +39,9 @@ pub struct Model {
 /// In 2018, `smooth` means up to this angle.
 const SMOOTH_2018: f64 = 22.5;
 
+/// 2020: steps add up until `trans clear`. Real drivers have three.
+const MOST_STEPS: usize = 100;
+
 /// No course wrote pictures anywhere near this; it keeps products of sizes within 64 bits.
 const MAX_SIDE: u32 = 1 << 24;
 
@@ -77,6 +80,7 @@ pub fn parse(source: &Source, dialect: Option<Dialect>) -> Result<Driver, Vec<Re
         models: Vec::new(),
         transform: Vec::new(),
         cutoff: 0.0,
+        settings: Vec::new(),
         places: Vec::new(),
         warnings: if dialect.is_none() { unclear } else { Vec::new() },
     };
@@ -119,6 +123,8 @@ struct Reader {
     transform: Vec<Transform>,
     /// 2020: smoothing limit so far.
     cutoff: f64,
+    /// Lines of the settings, at most one each, and of the things of which there may be many.
+    settings: Vec<(Vec<Step>, Range<usize>)>,
     places: Vec<(Vec<Step>, Range<usize>)>,
     warnings: Vec<Report>,
 }
@@ -217,8 +223,8 @@ impl Reader {
         }
         // The last line that sets a value is the one to show.
         let place: Vec<Step> = place.iter().map(|&key| key.into()).collect();
-        self.places.retain(|(other, _)| *other != place);
-        self.places.push((place, line.range()));
+        self.settings.retain(|(other, _)| *other != place);
+        self.settings.push((place, line.range()));
         line.exactly(expected)
     }
 
@@ -319,7 +325,12 @@ impl Reader {
         let (smooth_angle, file) = match (line.rest[8].text, line.rest.len()) {
             ("smooth", 10..) => (SMOOTH_2018, 9),
             ("sharp", 10..) => (0.0, 9),
-            (_, 10..) if self.dialect == Dialect::Course2019 => (line.number(&line.rest[8], expected)?, 9),
+            (_, count) if self.dialect == Dialect::Course2019 => {
+                if count < 10 {
+                    return Err(line.count("at least 10", count, expected));
+                }
+                (line.number(&line.rest[8], expected)?, 9)
+            }
             _ => (0.0, 8),
         };
         let transform = vec![
@@ -350,6 +361,10 @@ impl Reader {
         let expected = "trans clear | rota axis_x axis_y axis_z degrees | scale sx sy sz | move x y z";
         let kind = line.rest.first().map_or("", |w| w.text);
         let numbers: Vec<f64> = line.rest.iter().skip(1).map(|w| line.number(w, expected)).collect::<Result<_, _>>()?;
+        if self.transform.len() >= MOST_STEPS && kind != "clear" {
+            let message = format!("more than {MOST_STEPS} steps without `trans clear`");
+            return Err(line.error(message).help("every model repeats all steps so far"));
+        }
         match (kind, numbers.as_slice()) {
             ("clear", []) => self.transform.clear(),
             ("rota", &[x, y, z, degrees]) => self.transform.push(Transform::Rotate { axis: [x, y, z], degrees }),
@@ -364,7 +379,8 @@ impl Reader {
     }
 
     fn finish(self, source: &Source) -> Result<Driver, Report> {
-        let Self { dialect, values, models, places, .. } = self;
+        let Self { dialect, values, models, settings, mut places, .. } = self;
+        places.extend(settings);
         let missing = |what: &str| {
             let end = source.text.trim_end().len();
             Report::error(format!("this driver has no `{what}` line"))
@@ -375,6 +391,7 @@ impl Reader {
         let near = if dialect == Dialect::Course2020 { "camera" } else { "d" };
         let scene = Scene {
             snell: SCHEMA_VERSION,
+            schema: None,
             ambient: values.ambient,
             eta_outside: values.eta_outside.unwrap_or(1.0),
             render: Render {

@@ -3,7 +3,7 @@
 use crate::report::{Report, Source};
 use crate::words::{Line, lines};
 use snell::film::Rgb;
-use snell::scene::{Material, WarningCode};
+use snell::scene::{LARGEST_NUMBER, Material, WarningCode};
 
 /// A material as the file has it.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -15,7 +15,8 @@ pub struct MtlMaterial {
     ks: Rgb,
     kr: Option<Rgb>,
     exponent: Option<f64>,
-    illum: u32,
+    /// `illum 3`.
+    mirrors: bool,
 }
 
 /// How a year reads the materials of polygons.
@@ -48,7 +49,7 @@ impl MtlMaterial {
 
     /// The material by the rule of a year. Polygons are opaque.
     pub fn material(&self, rule: MtlRule) -> Material {
-        let by_illum = if self.illum == 3 { self.ks } else { Rgb::gray(0.0) };
+        let by_illum = if self.mirrors { self.ks } else { Rgb::gray(0.0) };
         let kr = match rule.mirror {
             Mirror::One => Rgb::gray(1.0),
             Mirror::KrOrOne => self.kr.unwrap_or(Rgb::gray(1.0)),
@@ -90,7 +91,10 @@ pub fn parse_mtl(source: &Source) -> Result<(Vec<MtlMaterial>, Vec<Report>), Rep
             "Ks" => material.ks = color(&line)?,
             "Kr" => material.kr = Some(color(&line)?),
             "Ns" => material.exponent = Some(single(&line)?),
-            "illum" => material.illum = line.rest.first().and_then(|w| w.text.parse().ok()).unwrap_or(0),
+            "illum" => {
+                let [illum] = line.exactly("illum number")?;
+                material.mirrors = illum == 3.0;
+            }
             // Read by no integrator yet: emission, opacity, index, and their relatives in newer exporters.
             "Ke" | "Ni" | "d" | "Tr" | "Tf" | "Pr" | "Pm" | "Ps" | "Pc" | "Pcr" | "aniso" | "anisor" | "sharpness" => {}
             _ if keyword.starts_with("map_") || matches!(keyword, "bump" | "disp" | "decal" | "refl" | "norm") => {
@@ -115,7 +119,11 @@ fn texture(line: &Line<'_>) -> Report {
 
 fn color(line: &Line<'_>) -> Result<Rgb, Report> {
     let expected = "Ka, Kd, Ks or Kr, and red green blue, or one number for gray";
-    match line.numbers(expected)?.as_slice() {
+    let numbers = line.numbers(expected)?;
+    if let Some(value) = numbers.iter().find(|v| v.abs() > LARGEST_NUMBER) {
+        return Err(line.error(format!("expected numbers between -1e15 and 1e15, read {value}")));
+    }
+    match numbers.as_slice() {
         &[v] => Ok(Rgb::gray(v)),
         &[r, g, b] => Ok(Rgb::new(r, g, b)),
         other => Err(line.count("1 or 3", other.len(), expected)),
@@ -123,7 +131,11 @@ fn color(line: &Line<'_>) -> Result<Rgb, Report> {
 }
 
 fn single(line: &Line<'_>) -> Result<f64, Report> {
-    line.exactly::<1>("Ns exponent").map(|[v]| v)
+    let [exponent] = line.exactly("Ns exponent")?;
+    if (0.0..=LARGEST_NUMBER).contains(&exponent) {
+        return Ok(exponent);
+    }
+    Err(line.error(format!("an exponent is between 0 and 1e15, read {exponent}")))
 }
 
 #[cfg(test)]

@@ -35,43 +35,27 @@ pub fn parse_obj(source: &Source) -> Result<ObjModel, Report> {
         slots: HashMap::new(),
         slot: None,
         later: Vec::new(),
-        polygon: Vec::new(),
+        corners: Vec::new(),
+        ends: Vec::new(),
         unknown: HashSet::new(),
         warnings: Vec::new(),
-        earcut: earcut::Earcut::new(),
     };
     let mut start = 0;
-    for line in logical_lines(&source.text) {
-        let content = line.split('#').next().unwrap_or_default();
-        let mut words = words(content, start).filter(|w| w.text != "\\");
-        if let Some(keyword) = words.next() {
-            let rest: Vec<Word<'_>> = words.collect();
-            reader.line(&keyword, &rest)?;
+    let mut line: Vec<Word<'_>> = Vec::new();
+    for physical in source.text.split_inclusive('\n') {
+        let content = physical.split('#').next().unwrap_or_default().trim_end();
+        // A backslash at the end joins a line with the next; one in a comment does not.
+        let joined = content.strip_suffix('\\');
+        line.extend(words(joined.unwrap_or(content), start));
+        start += physical.len();
+        if joined.is_none() || start == source.text.len() {
+            if let Some((keyword, rest)) = line.split_first() {
+                reader.line(keyword, rest)?;
+            }
+            line.clear();
         }
-        start += line.len();
     }
     reader.finish()
-}
-
-/// Lines with their ends; a backslash at the end joins a line with the next.
-fn logical_lines(text: &str) -> impl Iterator<Item = &str> {
-    let mut rest = text;
-    std::iter::from_fn(move || {
-        if rest.is_empty() {
-            return None;
-        }
-        let mut end = 0;
-        loop {
-            end = rest[end..].find('\n').map_or(rest.len(), |i| end + i + 1);
-            let joined = rest[..end].trim_end_matches(['\n', '\r']).ends_with('\\');
-            if !joined || end == rest.len() {
-                break;
-            }
-        }
-        let (line, after) = rest.split_at(end);
-        rest = after;
-        Some(line)
-    })
 }
 
 struct Reader<'a> {
@@ -83,10 +67,11 @@ struct Reader<'a> {
     slot: Option<u32>,
     /// Vertices that a face named before they came, to be checked at the end.
     later: Vec<(u32, Range<usize>)>,
-    polygon: Vec<u32>,
+    /// Corners of all polygons, and where each ends, with its slot. They become triangles when all vertices are there.
+    corners: Vec<u32>,
+    ends: Vec<(usize, u32)>,
     unknown: HashSet<String>,
     warnings: Vec<Report>,
-    earcut: earcut::Earcut<f64>,
 }
 
 impl Reader<'_> {
@@ -144,19 +129,15 @@ impl Reader<'_> {
         if rest.len() < 3 {
             return Err(self.error(keyword, format!("a face has at least 3 corners, read {}", rest.len())));
         }
-        self.polygon.clear();
         for word in rest {
             let index = self.corner(word)?;
-            self.polygon.push(index);
+            self.corners.push(index);
         }
         if self.slot.is_none() {
             self.use_material("");
         }
         let slot = self.slot.unwrap_or(0);
-        for triangle in self.triangles() {
-            self.mesh.faces.push(triangle);
-            self.mesh.face_slots.push(slot);
-        }
+        self.ends.push((self.corners.len(), slot));
         Ok(())
     }
 
@@ -187,45 +168,18 @@ impl Reader<'_> {
             .help("vertices are counted from 1, or backwards from -1, the latest")
     }
 
-    /// A fan for triangles and convex polygons, ears for others (Meisters 1975).
-    fn triangles(&mut self) -> Vec<[u32; 3]> {
-        let corners = &self.polygon;
-        let fan = || (1..corners.len() - 1).map(|i| [corners[0], corners[i], corners[i + 1]]).collect();
-        let points: Option<Vec<Vec3>> = corners.iter().map(|&v| self.mesh.vertices.get(v as usize).copied()).collect();
-        let Some(points) = points.filter(|p| p.len() > 3) else { return fan() };
-        // Newell's normal tells the plane; a fan is right if no triangle of it turns the other way.
-        let normal = (0..points.len())
-            .map(|i| points[i].cross(points[(i + 1) % points.len()]))
-            .fold(Vec3::default(), |sum, c| sum + c);
-        let origin = points[0];
-        let turns_back = points.windows(2).skip(1).any(|w| (w[0] - origin).cross(w[1] - origin).dot(normal) < 0.0);
-        if !turns_back {
-            return fan();
-        }
-        let drop = (0..3).max_by(|&a, &b| normal.component(a).abs().total_cmp(&normal.component(b).abs())).unwrap_or(2);
-        let flip = normal.component(drop) < 0.0;
-        let flat = points.iter().map(|p| {
-            let (x, y) = (p.component((drop + 1) % 3), p.component((drop + 2) % 3));
-            if flip { [y, x] } else { [x, y] }
-        });
-        let mut ears: Vec<u32> = Vec::new();
-        self.earcut.earcut(flat, &[], &mut ears);
-        let corner = |&i: &u32| corners[i as usize];
-        // earcut may turn all triangles around; the polygon's own sense is kept.
-        let triangles = ears.chunks_exact(3).map(|t| [corner(&t[0]), corner(&t[1]), corner(&t[2])]);
-        let vertices = &self.mesh.vertices;
-        triangles
-            .map(|[a, b, c]| {
-                let [p, q, r] = [a, b, c].map(|v| vertices[v as usize]);
-                if (q - p).cross(r - p).dot(normal) < 0.0 { [a, c, b] } else { [a, b, c] }
-            })
-            .collect()
-    }
-
-    fn finish(self) -> Result<ObjModel, Report> {
+    fn finish(mut self) -> Result<ObjModel, Report> {
         let count = self.mesh.vertices.len();
         if let Some((vertex, range)) = self.later.iter().find(|(v, _)| *v as usize >= count) {
             return Err(self.out_of_range(i64::from(*vertex) + 1, range.clone()));
+        }
+        let mut earcut = earcut::Earcut::new();
+        let mut start = 0;
+        for &(end, slot) in &self.ends {
+            let triangles = triangles(&self.corners[start..end], &self.mesh.vertices, &mut earcut);
+            self.mesh.face_slots.extend(triangles.iter().map(|_| slot));
+            self.mesh.faces.extend(triangles);
+            start = end;
         }
         if self.mesh.faces.is_empty() {
             let help = "is it an OBJ file? Its faces are lines that start with `f`";
@@ -233,6 +187,41 @@ impl Reader<'_> {
         }
         Ok(ObjModel { mesh: self.mesh, libraries: self.libraries, warnings: self.warnings })
     }
+}
+
+/// A fan for triangles and convex polygons, ears for others (Meisters 1975).
+fn triangles(corners: &[u32], vertices: &[Vec3], earcut: &mut earcut::Earcut<f64>) -> Vec<[u32; 3]> {
+    let fan = || (1..corners.len() - 1).map(|i| [corners[0], corners[i], corners[i + 1]]).collect();
+    if corners.len() == 3 {
+        return fan();
+    }
+    let points: Vec<Vec3> = corners.iter().map(|&v| vertices[v as usize]).collect();
+    // Newell's normal tells the plane; a fan is right if no triangle of it turns the other way.
+    let normal = (0..points.len())
+        .map(|i| points[i].cross(points[(i + 1) % points.len()]))
+        .fold(Vec3::default(), |sum, c| sum + c);
+    let origin = points[0];
+    let turns_back = points.windows(2).skip(1).any(|w| (w[0] - origin).cross(w[1] - origin).dot(normal) < 0.0);
+    if !turns_back {
+        return fan();
+    }
+    let drop = (0..3).max_by(|&a, &b| normal.component(a).abs().total_cmp(&normal.component(b).abs())).unwrap_or(2);
+    let flip = normal.component(drop) < 0.0;
+    let flat = points.iter().map(|p| {
+        let (x, y) = (p.component((drop + 1) % 3), p.component((drop + 2) % 3));
+        if flip { [y, x] } else { [x, y] }
+    });
+    let mut ears: Vec<u32> = Vec::new();
+    earcut.earcut(flat, &[], &mut ears);
+    let corner = |&i: &u32| corners[i as usize];
+    // earcut may turn all triangles around; the polygon's own sense is kept.
+    let triangles = ears.chunks_exact(3).map(|t| [corner(&t[0]), corner(&t[1]), corner(&t[2])]);
+    triangles
+        .map(|[a, b, c]| {
+            let [p, q, r] = [a, b, c].map(|v| vertices[v as usize]);
+            if (q - p).cross(r - p).dot(normal) < 0.0 { [a, c, b] } else { [a, b, c] }
+        })
+        .collect()
 }
 
 /// The words as one name, with the spaces between them.
@@ -266,6 +255,7 @@ mod tests {
         ] {
             assert_eq!(read(&format!("{SQUARE}f {face}")).mesh.faces, [[0, 1, 2], [0, 2, 3]], "{face}");
         }
+        assert_eq!(read(&format!("# C:\\models\\\n{SQUARE}f 1 2 3")).mesh.vertices.len(), 4, "a comment joins nothing");
         assert_eq!(read(&format!("f 1 2 3\n{SQUARE}")).mesh.faces, [[0, 1, 2]], "vertices may come later");
     }
 
@@ -289,6 +279,8 @@ mod tests {
             let [a, b, c] = mesh.corners(f);
             (b - a).cross(c - a).z / 2.0
         };
+        let (vertices, faces) = text.split_at(text.find('f').unwrap());
+        assert_eq!(read(&format!("{faces}{vertices}")).mesh.faces, mesh.faces, "also before its vertices");
         // Shoelace: 6. Every triangle counter-clockwise, and the areas of each polygon add up to it.
         for polygon in 0..4 {
             let areas = [area(2 * polygon), area(2 * polygon + 1)];

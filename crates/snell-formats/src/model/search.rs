@@ -5,8 +5,11 @@ use crate::report::Report;
 use snell::scene::WarningCode;
 use std::path::{Path, PathBuf};
 
-/// Folders beside a scene in which people keep its models, in lower case.
+/// Folders in which people keep models, in lower case; they come before other folders.
 const MODEL_FOLDERS: &[&str] = &["models", "model", "obj", "objs", "mtl", "mtls", "meshes", "mesh"];
+
+/// So many folders beside a scene are looked into; a home folder may hold thousands.
+const MOST_FOLDERS: usize = 200;
 
 /// A file that was looked for.
 #[derive(Clone, Debug)]
@@ -18,8 +21,8 @@ pub struct Found {
 }
 
 /// Finds a file by the name that a scene or model in `folder` gives it: in the folders of `search`, beside it, in the
-/// folder above, and in the model folders (`models`, `obj`, `mtl`, …) of both. The nearest wins; of equally near ones the
-/// first, with a warning if they differ.
+/// folder above, and in the folders that lie in these two (`models`, `obj`, `mtl`, … first). The first one found is taken,
+/// with a warning if another one is different, unless `search` asked for it.
 ///
 /// # Errors
 /// When it is in none of them.
@@ -27,47 +30,56 @@ pub fn find(name: &str, folder: &Path, search: &[PathBuf]) -> Result<Found, Repo
     // A driver made on Windows.
     let name = name.replace('\\', "/");
     let parent = parent(folder);
-    let mut places: Vec<Vec<PathBuf>> = search.iter().map(|folder| vec![folder.clone()]).collect();
-    places.push(vec![folder.to_owned()]);
-    places.extend(parent.clone().map(|p| vec![p]));
-    places.push(model_folders(folder));
-    places.extend(parent.as_deref().map(model_folders));
+    let mut places: Vec<PathBuf> = vec![folder.to_owned()];
+    places.extend(parent.clone());
+    places.extend(folders_in(folder));
+    places.extend(parent.as_deref().map(folders_in).unwrap_or_default());
 
     let file_name = Path::new(&name).file_name().map(PathBuf::from).unwrap_or_default();
     for candidate in [Path::new(&name), file_name.as_path()] {
-        for folders in &places {
-            let found: Vec<PathBuf> = folders.iter().map(|f| f.join(candidate)).filter(|p| p.is_file()).collect();
-            if let Some(path) = found.first() {
-                return Ok(Found { path: path.clone(), warning: ambiguous(&name, &found) });
-            }
+        let there = |folders: &[PathBuf]| -> Vec<PathBuf> {
+            folders.iter().map(|f| f.join(candidate)).filter(|p| p.is_file()).collect()
+        };
+        if let Some(path) = there(search).into_iter().next() {
+            return Ok(Found { path, warning: None });
+        }
+        let found = there(&places);
+        if let Some(path) = found.first() {
+            return Ok(Found { path: path.clone(), warning: ambiguous(&name, &found) });
         }
     }
-    let looked: Vec<String> = places.iter().flatten().map(|p| format!("{}/", p.display())).collect();
-    let help = format!("looked in {}; name another folder with --search DIR", looked.join(", "));
+    let looked: Vec<String> = search.iter().chain(&places).take(8).map(|p| format!("{}/", p.display())).collect();
+    let more = (search.len() + places.len()).saturating_sub(looked.len());
+    let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+    let help = format!("looked in {}{more}; name another folder with --search DIR", looked.join(", "));
     Err(Report::error(format!("the file `{name}` is not there")).help(help))
 }
 
 /// The folder above, also of a relative path without one.
 fn parent(folder: &Path) -> Option<PathBuf> {
-    match folder.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => Some(parent.to_owned()),
-        _ if folder.is_absolute() => None,
+    match (folder.parent(), folder.file_name()) {
+        // `..` has no name of its own: above it is one `..` more.
+        (Some(parent), Some(_)) if !parent.as_os_str().is_empty() => Some(parent.to_owned()),
+        _ if folder.is_absolute() && folder.parent().is_none() => None,
         _ => Some(folder.join("..")),
     }
 }
 
-fn model_folders(folder: &Path) -> Vec<PathBuf> {
+/// The folders in a folder, those for models first, then by name.
+fn folders_in(folder: &Path) -> Vec<PathBuf> {
     let Ok(entries) = std::fs::read_dir(folder) else { return Vec::new() };
-    let is_model_folder = |path: &PathBuf| {
-        let name = path.file_name().map(|n| n.to_string_lossy().to_lowercase()).unwrap_or_default();
-        MODEL_FOLDERS.contains(&name.as_str()) && path.is_dir()
-    };
-    let mut folders: Vec<PathBuf> = entries.flatten().map(|e| e.path()).filter(is_model_folder).collect();
-    folders.sort();
+    let name = |path: &PathBuf| path.file_name().map(|n| n.to_string_lossy().to_lowercase()).unwrap_or_default();
+    let visible = |path: &PathBuf| !name(path).starts_with('.') && path.is_dir();
+    let mut folders: Vec<PathBuf> = entries.flatten().map(|e| e.path()).filter(visible).collect();
+    folders.sort_by_cached_key(|path| (!MODEL_FOLDERS.contains(&name(path).as_str()), path.clone()));
+    folders.truncate(MOST_FOLDERS);
     folders
 }
 
 fn ambiguous(name: &str, found: &[PathBuf]) -> Option<Report> {
+    if found.len() < 2 {
+        return None;
+    }
     let first = disk::read(found.first()?, disk::MAX_MODEL_BYTES).ok()?;
     let other = found[1..].iter().find(|p| disk::read(p, disk::MAX_MODEL_BYTES).is_ok_and(|b| b != first))?;
     let message = format!(
@@ -94,18 +106,20 @@ mod tests {
         let find = |name: &str, search: &[PathBuf]| find(name, &at("scenes"), search);
 
         assert!(find("a.obj", &[]).unwrap_err().help.unwrap().contains("--search"));
+        put("other/a.obj", "1");
+        assert_eq!(find("a.obj", &[]).unwrap().path, at("other/a.obj"), "any folder beside");
         put("models/a.obj", "1");
-        assert_eq!(find("a.obj", &[]).unwrap().path, at("models/a.obj"));
+        let twice = find("a.obj", &[]).unwrap();
+        assert!(twice.path == at("models/a.obj") && twice.warning.is_none(), "the same twice is no question");
         put("mtl/a.obj", "2");
         let twice = find("a.obj", &[]).unwrap();
         assert!(twice.path == at("models/a.obj") && twice.warning.is_some());
-        put("mtl/a.obj", "1");
-        assert!(find("a.obj", &[]).unwrap().warning.is_none(), "the same twice is no question");
         put("scenes/obj/a.obj", "3");
         assert_eq!(find("a.obj", &[]).unwrap().path, at("scenes/obj/a.obj"));
         put("scenes/a.obj", "4");
-        assert_eq!(find("C:\\work\\a.obj", &[]).unwrap().path, at("scenes/a.obj"));
-        put("other/a.obj", "5");
-        assert_eq!(find("a.obj", &[at("other")]).unwrap().path, at("other/a.obj"));
+        let nearest = find("C:\\work\\a.obj", &[]).unwrap();
+        assert!(nearest.path == at("scenes/a.obj") && nearest.warning.is_some());
+        let asked = find("a.obj", &[at("other")]).unwrap();
+        assert!(asked.path == at("other/a.obj") && asked.warning.is_none());
     }
 }

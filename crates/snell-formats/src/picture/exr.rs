@@ -1,13 +1,14 @@
 //! EXR: 32-bit float, linear, the data window the part that was rendered, the display window the whole picture.
 
 use super::{Picture, checked_pixels};
+use crate::disk::Out;
 use exr::prelude::*;
 use snell::film::{Film, Rgb};
-use std::io::{Cursor, Write as IoWrite};
+use std::io::Cursor;
 
 const KEYWORD: &str = "snell";
 
-pub(super) fn write(out: &mut dyn IoWrite, film: &Film, recipe: Option<&str>) -> std::io::Result<()> {
+pub(super) fn write(out: &mut dyn Out, film: &Film, recipe: Option<&str>) -> std::io::Result<()> {
     let (width, height) = (film.width(), film.height());
     let pixel = |at: Vec2<usize>| {
         let index = at.y() * width + at.x();
@@ -24,7 +25,6 @@ pub(super) fn write(out: &mut dyn IoWrite, film: &Film, recipe: Option<&str>) ->
     let display = IntegerBounds::from_dimensions(Vec2(film.full_size[0] as usize, film.full_size[1] as usize));
     // One scan line block after the other, in this thread: the bytes do not depend on the machine.
     let encoding = Encoding { compression: Compression::ZIP16, ..Encoding::FAST_LOSSLESS };
-    let mut bytes = Cursor::new(Vec::new());
     let failed = |e: Error| std::io::Error::other(e.to_string());
     if film.is_finished() {
         let channels = SpecificChannels::rgb(|at| {
@@ -32,12 +32,11 @@ pub(super) fn write(out: &mut dyn IoWrite, film: &Film, recipe: Option<&str>) ->
             (r, g, b)
         });
         let layer = Layer::new((width, height), attributes, encoding, channels);
-        image(display, layer).write().non_parallel().to_buffered(&mut bytes).map_err(failed)?;
+        image(display, layer).write().non_parallel().to_buffered(out).map_err(failed)
     } else {
         let layer = Layer::new((width, height), attributes, encoding, SpecificChannels::rgba(pixel));
-        image(display, layer).write().non_parallel().to_buffered(&mut bytes).map_err(failed)?;
+        image(display, layer).write().non_parallel().to_buffered(out).map_err(failed)
     }
-    out.write_all(bytes.get_ref())
 }
 
 fn image<C>(display: IntegerBounds, layer: Layer<C>) -> Image<Layer<C>> {

@@ -84,8 +84,16 @@ pub struct Picture {
     pub recipe: Option<String>,
 }
 
-/// Pictures larger than this are not read, in pixels: 2^28, twelve gigabytes as `f64` with a copy.
-const MAX_PIXELS: u64 = 1 << 28;
+/// Pictures larger than this are not read, in pixels: 8192 x 8192, 1.6 gigabytes as `f64`.
+const MAX_PIXELS: u64 = 1 << 26;
+
+/// Memory for so many elements, or an error in words.
+fn fallible<T>(count: usize) -> Result<Vec<T>, String> {
+    let mut memory = Vec::new();
+    let bytes = count.saturating_mul(size_of::<T>());
+    memory.try_reserve_exact(count).map_err(|_| format!("{bytes} bytes of memory are not to be had"))?;
+    Ok(memory)
+}
 
 /// Reads a PNG, PPM, EXR or NPY picture.
 ///

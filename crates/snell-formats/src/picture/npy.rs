@@ -50,7 +50,8 @@ pub(super) fn read(bytes: &[u8]) -> Result<Picture, String> {
     if data.len() < count {
         return Err(format!("it is cut off: {} of {count} bytes of pixels are there", data.len()));
     }
-    let values: Vec<f64> = data[..count].as_chunks::<8>().0.iter().map(|&b| f64::from_le_bytes(b)).collect();
-    let pixels = values.as_chunks::<3>().0.iter().map(|&p| Rgb::from(p)).collect();
+    let value = |bytes: &[u8]| bytes.as_chunks::<8>().0.first().map_or(0.0, |&b| f64::from_le_bytes(b));
+    let color = |p: &[u8; 24]| Rgb::new(value(&p[..8]), value(&p[8..16]), value(&p[16..]));
+    let pixels = data[..count].as_chunks::<24>().0.iter().map(color).collect();
     Ok(Picture { width: width as usize, height: height as usize, pixels, max: None, recipe: None })
 }

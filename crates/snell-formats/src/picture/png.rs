@@ -1,6 +1,6 @@
 //! PNG, with the recipe in a text chunk.
 
-use super::{Picture, checked_pixels};
+use super::{MAX_PIXELS, Picture, checked_pixels, fallible};
 use png::{BitDepth, ColorType, Transformations};
 use snell::film::transfer::Encoding;
 use snell::film::{Film, Rgb};
@@ -24,46 +24,58 @@ pub(super) fn write(
         encoder.add_itxt_chunk(KEYWORD.to_owned(), recipe.to_owned())?;
     }
     let max = if sixteen_bit { 65535 } else { 255 };
-    let mut data = Vec::new();
-    for (pixel, &done) in film.pixels.iter().zip(&film.finished) {
-        let alpha = (!finished).then_some(if done { max } else { 0 });
-        for value in pixel.to_array().map(|c| encoding.encode(c, max)).into_iter().chain(alpha) {
-            if sixteen_bit {
-                data.extend(value.to_be_bytes());
-            } else {
-                data.push(value as u8);
+    let mut writer = encoder.write_header()?;
+    let mut stream = writer.stream_writer()?;
+    let mut row = Vec::new();
+    let width = film.width();
+    for (pixels, finished_pixels) in film.pixels.chunks_exact(width).zip(film.finished.chunks_exact(width)) {
+        row.clear();
+        for (pixel, &done) in pixels.iter().zip(finished_pixels) {
+            let alpha = (!finished).then_some(if done { max } else { 0 });
+            for value in pixel.to_array().map(|c| encoding.encode(c, max)).into_iter().chain(alpha) {
+                if sixteen_bit {
+                    row.extend(value.to_be_bytes());
+                } else {
+                    row.push(value as u8);
+                }
             }
         }
+        stream.write_all(&row)?;
     }
-    let mut writer = encoder.write_header()?;
-    writer.write_image_data(&data)?;
+    stream.finish()?;
     Ok(writer.finish()?)
 }
 
 pub(super) fn read(bytes: &[u8]) -> Result<Picture, String> {
-    let mut decoder = png::Decoder::new(Cursor::new(bytes));
+    let limits = png::Limits { bytes: MAX_PIXELS as usize * 8 };
+    let mut decoder = png::Decoder::new_with_limits(Cursor::new(bytes), limits);
     decoder.set_transformations(Transformations::EXPAND);
     let mut reader = decoder.read_info().map_err(|e| e.to_string())?;
     let (width, height) = reader.info().size();
-    checked_pixels(width.into(), height.into())?;
+    let count = checked_pixels(width.into(), height.into())?;
     let size = reader.output_buffer_size().ok_or("it is too large")?;
-    let mut data = vec![0; size];
+    let mut data = fallible(size)?;
+    data.resize(size, 0);
     let frame = reader.next_frame(&mut data).map_err(|e| e.to_string())?;
     reader.finish().map_err(|e| e.to_string())?;
     let info = reader.info();
-    let long = info.utf8_text.iter().find(|t| t.keyword == KEYWORD);
-    let recipe = long.and_then(|t| t.get_text().ok());
+    // Snell writes it plain; a compressed one could be of any size.
+    let recipe = info.utf8_text.iter().find(|t| t.keyword == KEYWORD && !t.compressed);
+    let recipe = recipe.and_then(|t| t.get_text().ok());
 
     let channels = frame.color_type.samples();
     let sixteen_bit = frame.bit_depth == BitDepth::Sixteen;
-    let samples: Vec<f64> = if sixteen_bit {
-        data.as_chunks::<2>().0.iter().map(|b| f64::from(u16::from_be_bytes(*b))).collect()
-    } else {
-        data.iter().map(|&b| f64::from(b)).collect()
+    let bytes_each = if sixteen_bit { 2 } else { 1 };
+    let sample = |pixel: &[u8], channel: usize| {
+        let bytes = &pixel[channel * bytes_each..(channel + 1) * bytes_each];
+        bytes.iter().fold(0.0, |value, &byte| value * 256.0 + f64::from(byte))
     };
     // Gray, gray and alpha, colour, colour and alpha. Alpha is not compared.
-    let color = |p: &[f64]| if channels < 3 { Rgb::gray(p[0]) } else { Rgb::new(p[0], p[1], p[2]) };
-    let pixels = samples.chunks_exact(channels).map(color).collect();
+    let color = |p: &[u8]| {
+        if channels < 3 { Rgb::gray(sample(p, 0)) } else { Rgb::new(sample(p, 0), sample(p, 1), sample(p, 2)) }
+    };
+    let mut pixels = fallible(count)?;
+    pixels.extend(data.chunks_exact(channels * bytes_each).map(color));
     let max = Some(if sixteen_bit { 65535 } else { 255 });
     Ok(Picture { width: width as usize, height: height as usize, pixels, max, recipe })
 }

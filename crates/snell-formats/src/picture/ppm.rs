@@ -1,6 +1,6 @@
 //! PPM: `P3` as text and `P6` as bytes, the course's format.
 
-use super::{Picture, checked_pixels};
+use super::{Picture, checked_pixels, fallible};
 use snell::film::transfer::Encoding;
 use snell::film::{Film, Rgb};
 use std::io::Write;
@@ -35,7 +35,11 @@ pub(super) fn read(bytes: &[u8]) -> Result<Picture, String> {
         return Err(format!("the largest value {max} is not between 1 and 65535"));
     }
     let count = checked_pixels(width, height)? * 3;
-    let mut samples = Vec::new();
+    // Each value takes a byte at least: a short file cannot ask for much memory.
+    if bytes.len() < count {
+        return Err(format!("it is cut off: {count} values need more than {} bytes", bytes.len()));
+    }
+    let mut samples = fallible::<f64>(count)?;
     if binary {
         let size = if max > 255 { 2 } else { 1 };
         // One white space ends the header.

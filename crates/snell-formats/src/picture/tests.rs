@@ -52,11 +52,24 @@ fn every_format_comes_back() {
 }
 
 #[test]
+fn unfinished_pixels_are_transparent() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.png");
+    write(&path, Format::Png { sixteen_bit: false }, &film(true), LINEAR, None).unwrap();
+    let mut reader = ::png::Decoder::new(std::io::Cursor::new(std::fs::read(&path).unwrap())).read_info().unwrap();
+    let mut data = vec![0; reader.output_buffer_size().unwrap()];
+    assert_eq!(reader.next_frame(&mut data).unwrap().color_type, ::png::ColorType::Rgba);
+    let alpha: Vec<u8> = data.iter().skip(3).step_by(4).copied().collect();
+    assert_eq!(alpha, [255, 255, 255, 255, 255, 0]);
+}
+
+#[test]
 fn hostile_pictures_are_refused_in_words() {
     let folder = tempfile::tempdir().unwrap();
     for (name, bytes, message) in [
         ("a.ppm", &b"P3 2 2 255 1 2 3"[..], "after 3 of 12 values"),
-        ("a.ppm", b"P6 2 2 255 1", "cut off: 1 of 12"),
+        ("a.ppm", b"P3 2 2 255", "cut off"),
+        ("a.ppm", b"P6 2 2 255 1", "cut off"),
         ("a.ppm", b"P3 100000 100000 255", "too many"),
         ("a.ppm", b"P3 0 1 255", "no size"),
         ("a.ppm", b"P3 1 1 255 1 2 300", "above the largest"),
@@ -84,14 +97,15 @@ proptest! {
     #[test]
     fn damaged_pictures_break_nothing(which in 0usize..4, at in 0usize..600, byte: u8, keep in 0usize..700) {
         let format = [Format::Png { sixteen_bit: false }, Format::Ppm { binary: false }, Format::Exr, Format::Npy][which];
-        let mut bytes = Vec::new();
+        let mut out = std::io::Cursor::new(Vec::new());
         let film = film(false);
         match format {
-            Format::Png { .. } => png::write(&mut bytes, &film, LINEAR, false, Some("r")).unwrap(),
-            Format::Ppm { .. } => ppm::write(&mut bytes, &film, LINEAR, false).unwrap(),
-            Format::Exr => exr::write(&mut bytes, &film, Some("r")).unwrap(),
-            Format::Npy => npy::write(&mut bytes, &film).unwrap(),
+            Format::Png { .. } => png::write(&mut out, &film, LINEAR, false, Some("r")).unwrap(),
+            Format::Ppm { .. } => ppm::write(&mut out, &film, LINEAR, false).unwrap(),
+            Format::Exr => exr::write(&mut out, &film, Some("r")).unwrap(),
+            Format::Npy => npy::write(&mut out, &film).unwrap(),
         }
+        let mut bytes = out.into_inner();
         if let Some(b) = bytes.get_mut(at) {
             *b = byte;
         }

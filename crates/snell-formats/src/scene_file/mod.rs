@@ -72,8 +72,8 @@ fn json_range(text: &str, line: usize, column: usize) -> Range<usize> {
         at -= 1;
     }
     let end = text[at..].chars().next().map_or(at, |c| at + c.len_utf8());
-    let word = text[..at].rfind(|c: char| c.is_whitespace() || "[]{},:".contains(c)).map_or(0, |i| i + 1);
-    word.min(at)..end
+    let before = text[..at].char_indices().rfind(|(_, c)| c.is_whitespace() || "[]{},:".contains(*c));
+    before.map_or(0, |(i, c)| i + c.len_utf8())..end
 }
 
 /// Puts a problem of a scene at its place in the text.

@@ -107,6 +107,8 @@ fn set_changes_one_value_and_nothing_else() {
         let mut expected = before.clone();
         expected.camera.eye = [1.0, 2.0, 3.0];
         assert_eq!(change("camera.eye=[1, 2, 3]"), expected);
+        expected.camera.eye = [0.0, 0.0, 7.0];
+        assert_eq!(change("camera.eye.3=7"), expected);
         let mut expected = before.clone();
         expected.render.shadows = snell::scene::Shadows::Off;
         assert_eq!(change("render.shadows=off"), expected);
@@ -117,13 +119,32 @@ fn set_changes_one_value_and_nothing_else() {
 }
 
 #[test]
+fn set_reaches_lists_on_one_line_and_quoted_names() {
+    let inline = SMALL
+        .replace("[[sphere]]\n", "")
+        .replace("name = \"ball\"\ncenter = [0, 0, 0]\nradius = 1\nmaterial = \"glass\"\n", "");
+    let sphere = |name: &str| format!("{{ name = '{name}', center = [0, 0, 0], radius = 1, material = 'a.b=c' }}");
+    let inline = format!("sphere = [{}, {}]\n{inline}[material.\"a.b=c\"]\n", sphere("one"), sphere("two"));
+    let mut text = source(&inline);
+    for change in ["sphere.two.radius=5", "sphere.1.radius=4", "material.\"a.b=c\".kd=0.5"] {
+        text = set(&text, Syntax::Toml, change).unwrap();
+    }
+    let scene = parse(&text, Syntax::Toml).unwrap();
+    assert_eq!((scene.spheres[0].radius, scene.spheres[1].radius), (4.0, 5.0));
+    assert_eq!(scene.materials["a.b=c"].kd.r, 0.5);
+    assert_eq!(&*text.name, "scene.toml with --set");
+}
+
+#[test]
 fn set_refuses_what_would_be_ignored() {
     for (change, message) in [
         ("material.glas.eta=2", "no `material.glas`"),
         ("sphere.cube.radius=2", "no `sphere.cube`"),
         ("sphere.0.radius=2", "no `sphere.0`"),
         ("sphere.radius=2", "is a list"),
-        ("camera.eye.x=2", "no keys"),
+        ("camera.eye.x=2", "no `camera.eye.x`"),
+        ("camera.eye.4=2", "no `camera.eye.4`"),
+        ("camera.near.x=2", "no keys"),
         ("material.glass.eta", "no `=`"),
         ("..=1", "no key"),
     ] {

@@ -32,7 +32,7 @@ impl TriangleMesh {
     }
 
     /// Normals of each face's corners: the mean of the unit normals of those faces at the same vertex that lie within
-    /// `cutoff` degrees of this face, not yet of unit length.
+    /// `cutoff` degrees of this face. A mean of unit vectors, so at most of unit length.
     pub fn smooth_normals(&self, cutoff: f64) -> Vec<[Vec3; 3]> {
         let flat: Vec<Option<Vec3>> = (0..self.faces.len()).map(|f| triangle::normal(self.corners(f))).collect();
         let mut around: Vec<Vec<u32>> = vec![Vec::new(); self.vertices.len()];
@@ -49,8 +49,9 @@ impl TriangleMesh {
                 return own;
             }
             let near = neighbours.iter().filter_map(|&f| flat[f as usize]).filter(|n| n.dot(own) >= least);
-            let sum = near.fold(Vec3::default(), |sum, n| sum + n);
-            if sum == Vec3::default() { own } else { sum }
+            let (sum, count) = near.fold((Vec3::default(), 0.0), |(sum, count), n| (sum + n, count + 1.0));
+            // Opposite normals can cancel.
+            if sum == Vec3::default() { own } else { sum * (1.0 / count) }
         };
         (0..self.faces.len()).map(|face| self.faces[face].map(|vertex| at(face, vertex))).collect()
     }
@@ -76,6 +77,22 @@ mod tests {
         assert!((sharp[0][0].unit() - Vec3::new(0.0, half, half)).length() < 1e-15);
         assert!((smooth[0][0].unit() - Vec3::new(0.0, 0.0, 1.0)).length() < 1e-15, "the ridge points up");
         assert!((smooth[0][2].unit() - Vec3::new(0.0, half, half)).length() < 1e-15, "the eaves stay");
+    }
+
+    #[test]
+    fn many_faces_at_a_corner_weigh_no_more_than_few() {
+        // A pyramid: four faces meet at the tip, two at each foot.
+        let feet = [[1., 0., 0.], [0., 1., 0.], [-1., 0., 0.], [0., -1., 0.]];
+        let mesh = TriangleMesh {
+            vertices: [[0., 0., 1.]].into_iter().chain(feet).map(Vec3::from).collect(),
+            faces: (0..4).map(|i| [0, i + 1, (i + 1) % 4 + 1]).collect(),
+            ..TriangleMesh::default()
+        };
+        // Each face's normal is (±1, ±1, 1)/√3. At the tip x and y cancel; at the foot (1, 0, 0) y does.
+        let [tip, foot, _] = mesh.smooth_normals(180.0)[0];
+        let s = 1.0 / 3.0f64.sqrt();
+        assert!((tip - Vec3::new(0.0, 0.0, s)).length() < 1e-15, "{tip:?}");
+        assert!((foot - Vec3::new(s, 0.0, s)).length() < 1e-15, "{foot:?}");
     }
 
     #[test]

@@ -58,8 +58,8 @@ impl<L: Lanes> RayFrame<L> {
             Vec3::new(when(along_x, sz), L::select(along_z, one, when(along_y, sz)), L::select(along_z, sy, one));
         let third = Vec3::new(when(along_x, one / dir.x), when(along_y, one / dir.y), when(along_z, one / dir.z));
 
-        // 1/0 is infinite, and 0·inf in a slab test is NaN. The largest finite number instead keeps the test
-        // conservative: an origin on or between the planes is inside, one outside them is far away.
+        // 1/0 is infinite, and 0·inf in a slab test is NaN. With the largest finite number instead an origin between the
+        // planes is inside, one outside them is far away, and boxes have a margin that keeps origins off their planes.
         let finite = |v: L| (one / v).min(L::splat(f64::MAX)).max(L::splat(-f64::MAX));
         let inv_dir = Vec3::new(finite(dir.x), finite(dir.y), finite(dir.z));
         Self { inv_dir, to_ray: [first, second, third] }

@@ -8,7 +8,8 @@ use crate::lanes::{Lanes, Mask};
 const FAR: f64 = (1u64 << 24) as f64;
 
 /// How much larger than a sphere its box must be, relative to the radius, so that it holds every hit: the textbook
-/// discriminant errs by a few units of `2⁻⁵³·FAR·r²`, which moves the surface by less than `2⁻²⁷·r`.
+/// discriminant errs by a few units of `2⁻⁵³·FAR·r²`, directions of unit length to two roundings included, which moves the
+/// surface by less than `2⁻²⁶·r`.
 pub const MARGIN: f64 = 1.0 / FAR;
 
 /// Distance to where the ray enters a sphere, and whether it does.

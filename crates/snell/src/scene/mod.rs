@@ -24,7 +24,10 @@ pub use crate::film::transfer::{Rounding, Transfer};
 use crate::film::Rgb;
 use indexmap::IndexMap;
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::de::{MapAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize};
+use std::fmt;
+use std::marker::PhantomData;
 
 /// The version of the scene format that this library reads and writes.
 pub const SCHEMA_VERSION: u32 = 1;
@@ -35,6 +38,9 @@ pub const SCHEMA_VERSION: u32 = 1;
 pub struct Scene {
     /// Version of this format: 1.
     pub snell: u32,
+    /// Where the JSON Schema lies, for editors; ignored.
+    #[serde(default, rename = "$schema", skip_serializing_if = "Option::is_none")]
+    pub schema: Option<String>,
     /// Light that comes from everywhere alike.
     #[serde(default)]
     pub ambient: Rgb,
@@ -49,7 +55,7 @@ pub struct Scene {
     #[serde(default, rename = "light", skip_serializing_if = "Vec::is_empty")]
     pub lights: Vec<Light>,
     /// What things are made of, by name.
-    #[serde(default, rename = "material", skip_serializing_if = "IndexMap::is_empty")]
+    #[serde(default, rename = "material", skip_serializing_if = "IndexMap::is_empty", deserialize_with = "unique")]
     pub materials: IndexMap<String, Material>,
     /// Spheres.
     #[serde(default, rename = "sphere", skip_serializing_if = "Vec::is_empty")]
@@ -57,6 +63,28 @@ pub struct Scene {
     /// Triangle meshes.
     #[serde(default, rename = "mesh", skip_serializing_if = "Vec::is_empty")]
     pub meshes: Vec<Mesh>,
+}
+
+/// A map in which no key comes twice. TOML refuses that itself, JSON does not.
+fn unique<'de, D: Deserializer<'de>, V: Deserialize<'de>>(deserializer: D) -> Result<IndexMap<String, V>, D::Error> {
+    struct Unique<V>(PhantomData<V>);
+    impl<'de, V: Deserialize<'de>> Visitor<'de> for Unique<V> {
+        type Value = IndexMap<String, V>;
+        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+            f.write_str("a table of names")
+        }
+        fn visit_map<A: MapAccess<'de>>(self, mut entries: A) -> Result<Self::Value, A::Error> {
+            let mut map = IndexMap::new();
+            while let Some((key, value)) = entries.next_entry::<String, V>()? {
+                if map.contains_key(&key) {
+                    return Err(serde::de::Error::custom(format!("the name `{key}` is given twice")));
+                }
+                map.insert(key, value);
+            }
+            Ok(map)
+        }
+    }
+    deserializer.deserialize_map(Unique(PhantomData))
 }
 
 pub(crate) fn one() -> f64 {

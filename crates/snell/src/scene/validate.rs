@@ -168,9 +168,13 @@ fn camera(scene: &Scene, found: &mut Findings) {
     }
     let (eye, look_at, up) = (Vec3::from(camera.eye), Vec3::from(camera.look_at), Vec3::from(camera.up));
     if !(eye - look_at).unit().is_finite() {
-        found.problem(at("look_at"), "look_at is where the eye is, so there is no direction to look in", "");
+        found.problem(
+            at("look_at"),
+            "look_at is where the eye is, or too near, so there is no direction to look in",
+            "",
+        );
     } else if !up.unit().is_finite() {
-        found.problem(at("up"), "up is (0, 0, 0), which is no direction", "try [0, 1, 0]");
+        found.problem(at("up"), "up is (0, 0, 0), or too short to be a direction", "try [0, 1, 0]");
     } else if camera.axes().is_none() {
         let message = "up is parallel to the view, so there is no upright picture";
         found.problem(at("up"), message, "choose another up, like [0, 0, 1] when looking straight down y");
@@ -187,7 +191,7 @@ fn lights(scene: &Scene, found: &mut Findings) {
             (None, Some(direction)) => {
                 let at = place!["light", i, "direction"];
                 if found.numbers(&at, &direction) && !Vec3::from(direction).unit().is_finite() {
-                    found.problem(at, "direction (0, 0, 0) is no direction", "");
+                    found.problem(at, "direction is (0, 0, 0), or too short to be one", "");
                 }
             }
             (Some(_), Some(_)) => {
@@ -260,15 +264,16 @@ fn meshes(scene: &Scene, found: &mut Findings) {
                 found.problem(at, "a rotation needs an axis, read [0, 0, 0]", "[0, 1, 0] turns about the y axis");
             }
         }
-        match (&mesh.geometry, &mesh.file, mesh.vertices.is_empty()) {
-            (None, Some(_), false) => {
-                found.problem(at("file"), "a mesh has a file or vertices, not both", "remove one of them");
+        let written_out = !mesh.vertices.is_empty() || !mesh.faces.is_empty();
+        match (mesh.file.is_some(), written_out) {
+            (true, true) => {
+                found.problem(at("file"), "a mesh has a file or vertices and faces, not both", "remove one of them");
             }
-            (None, None, true) => {
+            (false, false) if mesh.geometry.is_none() => {
                 let help = "add `file = \"model.obj\"`, or `vertices` and `faces`";
                 found.problem(place!["mesh", i], "a mesh needs a file, or vertices and faces", help);
             }
-            (None, None, false) => inline_mesh(mesh, i, found),
+            (false, true) => inline_mesh(mesh, i, found),
             _ => {}
         }
     }
@@ -279,6 +284,9 @@ fn inline_mesh(mesh: &super::Mesh, i: usize, found: &mut Findings) {
         found.numbers(&place!["mesh", i, "vertices", k], vertex);
     }
     let count = mesh.vertices.len();
+    if mesh.faces.is_empty() {
+        found.problem(place!["mesh", i, "vertices"], "a mesh with vertices needs faces", "like `faces = [[0, 1, 2]]`");
+    }
     for (k, face) in mesh.faces.iter().enumerate() {
         if let Some(bad) = face.iter().find(|&&v| v as usize >= count) {
             let message = format!("face asks for vertex {bad}, but there are {count}, counted from 0");

@@ -13,7 +13,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// A generation with more rays than this is split by pixels. It bounds the memory of the queues.
 const GENERATION_BUDGET: usize = 1 << 16;
 
-/// A pixel with more rays than this gets no more; the rest counts as lost light.
+/// A pixel with more rays than this gets no more; the rest counts as lost light. It bounds the time that a pixel takes, and
+/// what one pixel's generation takes of memory, some 40 MB.
 const RAYS_PER_PIXEL: u32 = 1 << 18;
 
 /// Sees every generation when it is done, with its rays, hits and contributions.
@@ -176,7 +177,7 @@ impl<'a, L: Lanes, O: Observer> Tracer<'a, L, O> {
             return;
         }
         let mut kept = self.empty_queue();
-        let mut planned = self.rays_of.clone();
+        let mut planned = if too_deep { Vec::new() } else { self.rays_of.clone() };
         for row in 0..children.len() {
             let pixel = children.pixel[row] as usize;
             if too_deep || planned[pixel] >= RAYS_PER_PIXEL {

@@ -43,7 +43,8 @@ pub(crate) fn contribution<L: Lanes>(hits: Batch<'_>) -> Rgb<L> {
 #[inline(always)]
 pub(crate) fn mirror_ray<L: Lanes>(hits: Batch<'_>) -> Child<L> {
     let weight = mirror(hits.world.render.integrator, &hits.weight(), &hits.coefficients());
-    let dir = snell::reflect(hits.wo(), hits.normal());
+    // Kept of unit length: the errors of a thousand bounces would add up, and boxes have margins for one rounding.
+    let dir = snell::reflect(hits.wo(), hits.normal()).unit();
     Child { exists: hits.active::<L>() & weight.carries(), origin: hits.point(), dir, weight }
 }
 
@@ -59,6 +60,8 @@ pub(crate) fn exit_ray<L: Lanes>(hits: Batch<'_>) -> Child<L> {
     let (eta_outside, eta_inside) = (L::splat(hits.world.eta_outside), hits.material(|m| m.eta));
     let (origin, dir, leaves) =
         snell::through_sphere(hits.point(), hits.normal(), hits.wo(), hits.center(), eta_outside, eta_inside);
+    // Where the indices are equal the direction must stay what it is, to the bit.
+    let dir = Vec3::select(eta_inside.eq(eta_outside), dir, dir.unit());
     Child { exists: goes_in & leaves, origin, dir, weight }
 }
 

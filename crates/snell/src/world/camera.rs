@@ -34,6 +34,11 @@ impl CameraFrame {
         (origin, (origin - self.eye).unit())
     }
 
+    /// The directions in which the corners of the picture look; not finite where eye and image plane coincide.
+    pub(crate) fn corner_rays(&self) -> [Vec3; 4] {
+        self.corners().map(|corner| (corner - self.eye).unit())
+    }
+
     /// The four corners of the picture on the image plane.
     pub fn corners(&self) -> [Vec3; 4] {
         let [left, right, bottom, top] = self.bounds;

@@ -79,8 +79,8 @@ impl World {
                 let hit = triangle::intersect(&ray, &RayFrame::new(dir), self.corners(index));
                 let [a, b, c] = self.corner_normals[at as usize];
                 let smooth = a * (1.0 - hit.beta - hit.gamma) + b * hit.beta + c * hit.gamma;
-                // Opposite normals at the corners can cancel.
-                if smooth == Vec3::default() { flat } else { smooth }
+                // Opposite normals at the corners can cancel, and a grazing ray can find no weights.
+                if smooth.is_finite() && smooth != Vec3::default() { smooth } else { flat }
             }
         };
         if flat.dot(dir) > 0.0 { -normal } else { normal }

@@ -102,6 +102,11 @@ impl World {
             corner_normals_of: Vec::new(),
             tree: Bvh::default(),
         };
+        if world.camera.corner_rays().iter().any(|dir| !dir.is_finite()) {
+            let message = "the image plane is so near to the eye that rays have no direction".to_owned();
+            let place = vec![Step::from("camera"), Step::from("near")];
+            return Err(vec![Problem { place, message, help: Some("move it away, like near = -5".to_owned()) }]);
+        }
         let material_ids: IndexMap<&str, u32> =
             scene.materials.keys().enumerate().map(|(i, name)| (name.as_str(), i as u32)).collect();
         for (i, s) in scene.spheres.iter().enumerate() {

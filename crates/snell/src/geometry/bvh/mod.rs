@@ -12,6 +12,9 @@ use crate::lanes::{Lanes, Mask};
 
 /// Relative size of the margin around each primitive: 2⁻⁴⁸ of the farthest distance from which a ray can come.
 ///
+/// Where a coordinate is so large that this is lost beside it, the step to the next `f32` is larger: `reach·2⁻⁴⁸` is
+/// lost beside `v` only if `|v| > reach·2⁻²⁴`, and then that step, at least `|v|·2⁻²⁴`, is more.
+///
 /// A primitive test places a hit within a few rounding errors, each `2⁻⁵³` of the distance between ray origin and
 /// primitive (sphere: the perpendicular `T − v·d`; triangle: the three vertices in ray space). Thirty-two of them are
 /// more than all of these together with those of the slab test. The textbook discriminant of near spheres errs by more;
