@@ -22,6 +22,10 @@ need_rust() {
         fi
     elif ! cargo --version 2>/dev/null | grep -qF "cargo $channel"; then
         missing "Rust $channel" 'sudo apt-get install rustup   (or install rustup as rust-lang.org describes)'
+    elif ! cargo clippy --version >/dev/null 2>&1 || ! cargo fmt --version >/dev/null 2>&1; then
+        missing 'clippy and rustfmt' 'sudo apt-get install rustup   (or install rustup as rust-lang.org describes)'
+    elif [ "${1:-}" = wasm ] && [ ! -d "$(rustc --print target-libdir --target wasm32-unknown-unknown)" ]; then
+        missing 'the Rust standard library for wasm32-unknown-unknown' 'sudo apt-get install rustup'
     fi
     command -v cc >/dev/null || missing 'a linker (cc)' 'sudo apt-get install gcc libc6-dev'
 }

@@ -22,6 +22,7 @@ stage 'build' cargo build --locked --quiet --workspace --profile ci
 stage 'Rust tests' cargo test --locked --quiet --workspace --profile ci
 stage 'Python tests: the slow oracle, the schema' oracle
 stage 'documentation' documentation
+stage 'fuzz targets compile' cargo check --locked --quiet --manifest-path fuzz/Cargo.toml --target-dir target/fuzz
 stage 'the library for WASM' cargo check --locked --quiet --package snell --target wasm32-unknown-unknown --profile ci
 
 printf '\n── all passed\n'

@@ -137,13 +137,7 @@ fn one(mut recipe: Recipe, mut loaded: Loaded, args: &RenderArgs, output: &Path)
     let widened = recipe.apply(&mut loaded.scene);
     let world = loaded.world().or_fail(SCENE)?;
     let widened = widened.map(|note| Report::warning(WarningCode::WidenedBounds, note));
-    let warnings: Vec<Report> = loaded
-        .warnings
-        .iter()
-        .cloned()
-        .chain(world.warnings.iter().map(|w| loaded.warning(w)))
-        .chain(widened)
-        .collect();
+    let warnings: Vec<Report> = widened.into_iter().chain(loaded.warnings_with(&world)).collect();
     for warning in warnings.iter().take(say::SHOWN) {
         warn(warning, args);
     }

@@ -161,6 +161,64 @@ fn a_changed_model_is_not_rendered_again_silently() {
 }
 
 #[test]
+fn models_of_one_name_in_two_folders_are_told_apart() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let scene = "snell = 1\nambient = 1\n[render]\nintegrator = 'lecture'\nsize = [8, 8]\nmax_depth = 1\n[camera]\n\
+                 eye = [0, 0, 9]\nlook_at = [0, 0, 0]\nup = [0, 1, 0]\nbounds = [-1, 1, -1, 1]\nnear = -5\n\
+                 [[mesh]]\nfile = 'p/t.obj'\n[[mesh]]\nfile = 'q/t.obj'\ntransform = [{ move = [0, 0, -3] }]\n";
+    fs::write(at.join("s.toml"), scene).unwrap();
+    for (name, ka) in [("p", ".9"), ("q", ".2")] {
+        fs::create_dir(at.join(name)).unwrap();
+        fs::write(at.join(name).join("t.obj"), format!("mtllib m.mtl\n{TRIANGLE}")).unwrap();
+        fs::write(at.join(name).join("m.mtl"), format!("newmtl m\nKa {ka} 0 0\n")).unwrap();
+    }
+    render(at, &["s.toml", "-o", "a.png"]);
+    render(at, &["--from", "a.png", "-o", "b.png"]);
+    run(at, &["diff", "a.png", "b.png"]);
+    // A model that is not read any more is a change too.
+    let colors = "newmtl m\nKa 1 0 0\n";
+    fs::write(at.join("p/m.mtl"), colors).unwrap();
+    assert_eq!(snell(at, &["render", "--from", "a.png", "-o", "c.png"]).status.code(), Some(3));
+    assert!(!at.join("c.png").exists());
+}
+
+#[test]
+fn a_picture_remembers_its_bits() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    render(at, &[&["lecture/default", "--bits", "16", "-o", "a.png"], TINY].concat());
+    render(at, &["--from", "a.png", "-o", "b.png"]);
+    run(at, &["diff", "a.png", "b.png"]);
+    assert!(stdout(&run(at, &["info", "b.png"])).contains("0 to 65535"));
+}
+
+#[test]
+fn what_is_read_is_not_written_over() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    render(at, &[&["lecture/default", "-o", "a.png"], TINY].concat());
+    render(at, &[&["lecture/wide", "-o", "b.png"], TINY].concat());
+    let before = fs::read(at.join("a.png")).unwrap();
+    for arguments in [
+        &["diff", "a.png", "b.png", "-o", "a.png"][..],
+        &["render", "--from", "a.png", "-o", "a.png"],
+        &["render", "lecture/default", "lecture/wide", "-o", "a.png"],
+        &["render", "lecture/default", "lecture/wide", "-o", "c.png"],
+    ] {
+        assert_eq!(snell(at, arguments).status.code(), Some(2), "{}", arguments.join(" "));
+    }
+    assert_eq!(fs::read(at.join("a.png")).unwrap(), before);
+    // A scene with the ending of a picture would be its own picture's name.
+    triangle_scene(at);
+    fs::copy(at.join("d.txt"), at.join("scene.png")).unwrap();
+    assert_eq!(snell(at, &["render", "scene.png"]).status.code(), Some(2));
+    // What cannot be written is said before the work is done.
+    let started = snell(at, &["render", "lecture/default", "--size", "8000x8000", "-o", "no/such/a.png"]);
+    assert!(started.status.code() == Some(1) && stderr(&started).contains("mkdir -p no/such"));
+}
+
+#[test]
 fn models_are_found_missed_and_refused_with_their_place() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
@@ -241,6 +299,10 @@ fn wrong_usage_ends_with_2() {
         &["render", "lecture/default", "--crop", "500,0,20,20"],
         &["render", "lecture/default", "--shadows", "soft"],
         &["render", "lecture/default", "--stretch"],
+        &["render", "lecture/default", "--depth", "1001"],
+        &["render", "lecture/default", "--threads", "5000"],
+        &["render", "lecture/default", "--bits", "12"],
+        &["render", "lecture/default", "--size", "9x9", "--crop", "0,0,4000000000,4000000000"],
         &["render", "a/driver.txt", "b/driver.txt", "-o", "out/"],
         &["render", "--from", "x.png", "--size", "5x5"],
         &["convert", "s.txt", "-o", "s.yaml"],

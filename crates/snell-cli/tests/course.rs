@@ -35,6 +35,22 @@ fn drivers(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
+/// Drivers with Ko and eta on their spheres, besides all of set 5.
+const LECTURE: &[&str] = &[
+    "set-2/driver00.txt",
+    "set-3/raytracer/TXT/Scene1.txt",
+    "set-3/raytracer/TXT/Scene2.txt",
+    "set-4/drivers/driver01.txt",
+    "set-4/drivers/driver02.txt",
+];
+
+/// The share of pixels that are not black.
+fn lit(npy: &Path) -> f64 {
+    let picture = snell_formats::picture::read(npy).unwrap();
+    let lit = picture.pixels.iter().filter(|p| p.mean() > 0.0).count();
+    lit as f64 / picture.pixels.len() as f64
+}
+
 /// Small, so that the test is quick: the readers are what is tested.
 const SMALL: &[&str] = &["--size", "48x48"];
 
@@ -63,6 +79,14 @@ fn every_driver_of_the_students_renders_but_three() {
             assert!(said.contains(message) && said.contains(place), "{name}\n{said}");
             continue;
         }
+        let dialect = match name.as_str() {
+            n if n.starts_with("set-1/") => "2019",
+            n if n.starts_with("set-5/") || LECTURE.contains(&n) => "lecture",
+            _ => "2018",
+        };
+        let info = common::stdout(&run(folder.path(), &["info", shown]));
+        assert!(info.contains(&format!("  dialect     {dialect}\n")), "{name}\n{info}");
+        assert!(lit(&folder.path().join("direct.npy")) > 0.01, "{name} is black");
         // As a scene file it is the same picture, to the bit.
         run(folder.path(), &["convert", shown, "-o", "scene.toml", "--force"]);
         run(folder.path(), &[&["render", "-q", "scene.toml", "-o", "converted.npy"], SMALL].concat());

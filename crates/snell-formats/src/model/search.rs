@@ -21,8 +21,9 @@ pub struct Found {
 }
 
 /// Finds a file by the name that a scene or model in `folder` gives it: in the folders of `search`, beside it, in the
-/// folder above, and in the folders that lie in these two (`models`, `obj`, `mtl`, … first). The first one found is taken,
-/// with a warning if another one is different, unless `search` asked for it.
+/// folder above, in the folders that lie beside it, and in the model folders (`models`, `obj`, `mtl`, …) above. The first
+/// one found is taken, with a warning if another one is different, unless `search` asked for it. Other folders above are
+/// other people's.
 ///
 /// # Errors
 /// When it is in none of them.
@@ -33,7 +34,8 @@ pub fn find(name: &str, folder: &Path, search: &[PathBuf]) -> Result<Found, Repo
     let mut places: Vec<PathBuf> = vec![folder.to_owned()];
     places.extend(parent.clone());
     places.extend(folders_in(folder));
-    places.extend(parent.as_deref().map(folders_in).unwrap_or_default());
+    let above = parent.as_deref().map(folders_in).unwrap_or_default();
+    places.extend(above.into_iter().filter(|folder| is_model_folder(folder)));
 
     let file_name = Path::new(&name).file_name().map(PathBuf::from).unwrap_or_default();
     for candidate in [Path::new(&name), file_name.as_path()] {
@@ -68,12 +70,19 @@ fn parent(folder: &Path) -> Option<PathBuf> {
 /// The folders in a folder, those for models first, then by name.
 fn folders_in(folder: &Path) -> Vec<PathBuf> {
     let Ok(entries) = std::fs::read_dir(folder) else { return Vec::new() };
-    let name = |path: &PathBuf| path.file_name().map(|n| n.to_string_lossy().to_lowercase()).unwrap_or_default();
-    let visible = |path: &PathBuf| !name(path).starts_with('.') && path.is_dir();
+    let visible = |path: &PathBuf| !lower_name(path).starts_with('.') && path.is_dir();
     let mut folders: Vec<PathBuf> = entries.flatten().map(|e| e.path()).filter(visible).collect();
-    folders.sort_by_cached_key(|path| (!MODEL_FOLDERS.contains(&name(path).as_str()), path.clone()));
+    folders.sort_by_cached_key(|path| (!is_model_folder(path), path.clone()));
     folders.truncate(MOST_FOLDERS);
     folders
+}
+
+fn is_model_folder(path: &Path) -> bool {
+    MODEL_FOLDERS.contains(&lower_name(path).as_str())
+}
+
+fn lower_name(path: &Path) -> String {
+    path.file_name().map(|n| n.to_string_lossy().to_lowercase()).unwrap_or_default()
 }
 
 fn ambiguous(name: &str, found: &[PathBuf]) -> Option<Report> {
@@ -99,7 +108,7 @@ mod tests {
     fn beside_above_and_in_model_folders_of_both() {
         let root = tempfile::tempdir().unwrap();
         let at = |p: &str| root.path().join(p);
-        for folder in ["scenes", "models", "scenes/obj", "mtl", "other"] {
+        for folder in ["scenes", "models", "scenes/obj", "scenes/props", "mtl", "other"] {
             fs::create_dir(at(folder)).unwrap();
         }
         let put = |p: &str, text: &str| fs::write(at(p), text).unwrap();
@@ -107,7 +116,10 @@ mod tests {
 
         assert!(find("a.obj", &[]).unwrap_err().help.unwrap().contains("--search"));
         put("other/a.obj", "1");
-        assert_eq!(find("a.obj", &[]).unwrap().path, at("other/a.obj"), "any folder beside");
+        assert!(find("a.obj", &[]).is_err(), "not in just any folder above");
+        put("scenes/props/a.obj", "1");
+        assert_eq!(find("a.obj", &[]).unwrap().path, at("scenes/props/a.obj"), "any folder beside");
+        fs::remove_file(at("scenes/props/a.obj")).unwrap();
         put("models/a.obj", "1");
         let twice = find("a.obj", &[]).unwrap();
         assert!(twice.path == at("models/a.obj") && twice.warning.is_none(), "the same twice is no question");

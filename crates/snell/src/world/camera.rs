@@ -34,9 +34,11 @@ impl CameraFrame {
         (origin, (origin - self.eye).unit())
     }
 
-    /// The directions in which the corners of the picture look; not finite where eye and image plane coincide.
-    pub(crate) fn corner_rays(&self) -> [Vec3; 4] {
-        self.corners().map(|corner| (corner - self.eye).unit())
+    /// Is the image plane where `near` puts it, to three digits, in spite of rounding? Very near to the eye, or with the
+    /// eye very far from the origin, it is not, and rays have wrong directions or none.
+    pub(crate) fn has_image_plane(&self) -> bool {
+        let distance = (self.point(0.0, 0.0) - self.eye).length();
+        (distance / self.near + 1.0).abs() < 1e-3
     }
 
     /// The four corners of the picture on the image plane.

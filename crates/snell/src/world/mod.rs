@@ -102,8 +102,8 @@ impl World {
             corner_normals_of: Vec::new(),
             tree: Bvh::default(),
         };
-        if world.camera.corner_rays().iter().any(|dir| !dir.is_finite()) {
-            let message = "the image plane is so near to the eye that rays have no direction".to_owned();
+        if !world.camera.has_image_plane() {
+            let message = "the image plane is so near to the eye that it is lost in rounding".to_owned();
             let place = vec![Step::from("camera"), Step::from("near")];
             return Err(vec![Problem { place, message, help: Some("move it away, like near = -5".to_owned()) }]);
         }

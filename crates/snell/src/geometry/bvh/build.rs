@@ -218,7 +218,7 @@ mod tests {
         // All in one place; one place and a few far away; distances that double, where each split takes off one.
         let same = vec![cube(1.0, 2.0, 3.0); 100_000];
         let far = [same.clone(), vec![cube(1e15, 0.0, 0.0); 3]].concat();
-        let doubling: Vec<_> = (0..2000).map(|i| cube(f32::powi(2.0, i % 50), 0.0, 0.0)).collect();
+        let doubling: Vec<_> = (0..2000).map(|i| cube((1u64 << (i % 50)) as f32, 0.0, 0.0)).collect();
         for boxes in [same, far, doubling, vec![cube(0.0, 0.0, 0.0)]] {
             let (depth, leaf) = check(&build(boxes.clone()), &boxes);
             assert!(depth <= MAX_DEPTH && leaf <= LARGEST_LEAF, "depth {depth}, leaves of {leaf}");
