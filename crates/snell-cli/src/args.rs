@@ -128,7 +128,7 @@ pub struct ReadingArgs {
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
     /// Look for models here first; may be given many times
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", value_parser = folder)]
     pub search: Vec<PathBuf>,
     /// Year of a driver file, if it is not recognised: 2018, lecture, 2019 or 2020
     #[arg(long, value_name = "YEAR", value_parser = dialect)]
@@ -228,6 +228,11 @@ pub struct DiffArgs {
 fn named<T: for<'de> serde::Deserialize<'de>>(text: &str) -> Result<T, String> {
     let deserializer: StrDeserializer<'_, ValueError> = text.into_deserializer();
     T::deserialize(deserializer).map_err(|e| e.to_string().replace("variant", "value"))
+}
+
+fn folder(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    if path.is_dir() { Ok(path) } else { Err("there is no such folder".to_owned()) }
 }
 
 fn dialect(text: &str) -> Result<Dialect, String> {

@@ -1,6 +1,6 @@
 //! Ray and sphere.
 
-use super::{Ray, Vec3};
+use super::{Bounds, Ray, Vec3};
 use crate::lanes::{Lanes, Mask};
 
 /// Beyond this ratio of (distance to the centre)² to radius² the textbook discriminant is given up: it has lost
@@ -11,6 +11,13 @@ const FAR: f64 = (1u64 << 24) as f64;
 /// discriminant errs by a few units of `2⁻⁵³·FAR·r²`, directions of unit length to two roundings included, which moves the
 /// surface by less than `2⁻²⁶·r`.
 pub const MARGIN: f64 = 1.0 / FAR;
+
+/// The box of a sphere, with that margin.
+pub fn bounds(center: Vec3, radius: f64) -> Bounds {
+    let r = radius * (1.0 + MARGIN);
+    let r = Vec3::new(r, r, r);
+    Bounds { min: center - r, max: center + r }
+}
 
 /// Distance to where the ray enters a sphere, and whether it does.
 ///

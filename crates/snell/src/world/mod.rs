@@ -239,11 +239,7 @@ impl World {
     }
 
     fn build_tree(&mut self) {
-        let spheres = self.spheres.iter().map(|s| {
-            let r = s.radius * (1.0 + sphere::MARGIN);
-            let r = Vec3::new(r, r, r);
-            Bounds { min: s.center - r, max: s.center + r }
-        });
+        let spheres = self.spheres.iter().map(|s| sphere::bounds(s.center, s.radius));
         let triangles = self.faces.iter().map(|f| Bounds::of(f.map(|v| self.vertices[v as usize])));
         let boxes: Vec<Bounds> = spheres.chain(triangles).collect();
         // Rays start on surfaces or on the image plane; no ray origin is farther from a primitive than this.

@@ -37,11 +37,16 @@ pub struct Bvh {
     primitives: Vec<u32>,
 }
 
+/// The box of a primitive that rays reach from at most `reach` away.
+fn padded(bounds: &Bounds, reach: f64) -> OuterBox {
+    OuterBox::around(bounds, reach * MARGIN)
+}
+
 impl Bvh {
     /// Builds the tree over the boxes of all primitives, in the order of their ids. `reach` is the largest distance
     /// between a ray's origin and a primitive.
     pub fn build(boxes: &[Bounds], reach: f64) -> Self {
-        build::build(boxes.iter().map(|b| OuterBox::around(b, reach * MARGIN)).collect())
+        build::build(boxes.iter().map(|b| padded(b, reach)).collect())
     }
 
     /// No tree: one leaf with everything in it, the oracle of the tests.
@@ -123,6 +128,91 @@ impl Bvh {
                 if node.bounds.enter(ray.origin, frame, ray.t_min, limit).1.any() {
                     break;
                 }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Vec3, sphere, triangle};
+    use proptest::prelude::*;
+
+    fn direction() -> impl Strategy<Value = Vec3> {
+        prop::array::uniform3(-1.0..1.0f64).prop_map(Vec3::from).prop_filter("short", |v| v.length() > 0.1)
+    }
+
+    /// Whole numbers and others, near the origin and far from it.
+    fn point() -> impl Strategy<Value = Vec3> {
+        let number = prop_oneof![-20.0..20.0f64, (-9..9i32).prop_map(f64::from)];
+        let offset = prop_oneof![Just(0.0), Just(4096.0), Just(1e6), Just(-3e8)];
+        (prop::array::uniform3(number), offset).prop_map(|(p, offset)| p.map(|c| c + offset).into())
+    }
+
+    /// The claim on which everything rests: where a primitive test finds a hit, its box is entered before it.
+    fn hit_lies_in_box(ray: &Ray, t: f64, bounds: &Bounds, reach: f64) {
+        let (near, met) = padded(bounds, reach).enter(ray.origin, &RayFrame::new(ray.dir), ray.t_min, t);
+        assert!(met && near < t, "hit at {t}, box entered at {near}: {met}");
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(2000))]
+
+        #[test]
+        fn spheres_are_hit_only_in_their_boxes(
+            center in point(),
+            exponent in -9..10i32,
+            from in direction(),
+            distance in -1.0..6.0f64,
+            axis in 0..3usize,
+            around in direction(),
+            rim in prop_oneof![Just(0.0), -1e-12..1e-12f64, -1e-6..1e-6f64, -1.0..0.0f64],
+        ) {
+            // Aimed at the rim of the sphere, at one of the six points where it touches its box.
+            let radius = libm::exp10(f64::from(exponent));
+            let origin = center + from * (radius * (1.5 + libm::exp10(distance)));
+            let mut pole = [0.0; 3];
+            pole[axis] = if around.x < 0.0 { -1.0 } else { 1.0 };
+            let target = center + Vec3::from(pole) * (radius * (1.0 + rim));
+            let dir = (target - origin).unit();
+            prop_assume!(dir.is_finite());
+            let ray = Ray { origin, dir, t_min: 0.0, t_max: f64::INFINITY };
+            let (t, hit) = sphere::intersect(&ray, center, radius);
+            if hit {
+                let bounds = sphere::bounds(center, radius);
+                let reach = Bounds::of([origin]).union(bounds).diagonal();
+                hit_lies_in_box(&ray, t, &bounds, reach);
+            }
+        }
+
+        #[test]
+        fn triangles_are_hit_only_in_their_boxes(
+            origin in point(),
+            corners in prop::array::uniform3(prop::array::uniform3(-9..9i32)),
+            flat in 0..4usize,
+            weights in prop::array::uniform3(prop_oneof![Just(0.0), 0.0..1.0f64]),
+        ) {
+            let mut corners = corners.map(|c| origin + Vec3::from(c.map(f64::from)) + Vec3::new(0.5, 2.0, 12.0));
+            // Often in a plane across an axis, where the box has no thickness but its margin.
+            let (_, rest) = corners.split_at_mut(1);
+            match flat {
+                0 => rest.iter_mut().for_each(|c| c.x = origin.x + 0.5),
+                1 => rest.iter_mut().for_each(|c| c.y = origin.y + 2.0),
+                2 => rest.iter_mut().for_each(|c| c.z = origin.z + 12.0),
+                _ => {}
+            }
+            let sum: f64 = weights.iter().sum();
+            prop_assume!(sum > 0.0);
+            let target = (corners[0] * weights[0] + corners[1] * weights[1] + corners[2] * weights[2]) * (1.0 / sum);
+            let dir = (target - origin).unit();
+            prop_assume!(dir.is_finite());
+            let ray = Ray { origin, dir, t_min: 0.0, t_max: f64::INFINITY };
+            let found = triangle::intersect(&ray, &RayFrame::new(dir), corners);
+            if found.hit {
+                let bounds = Bounds::of(corners);
+                let reach = Bounds::of([origin]).union(bounds).diagonal();
+                hit_lies_in_box(&ray, found.t, &bounds, reach);
             }
         }
     }
