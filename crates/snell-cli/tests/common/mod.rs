@@ -1,8 +1,8 @@
 //! Running the `snell` command as a person would.
 
 #![allow(dead_code, reason = "every test file uses some of it")]
-#![allow(clippy::print_stderr, reason = "a skipped test says so")]
 
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -38,6 +38,8 @@ pub fn data() -> Option<PathBuf> {
     if folder.is_dir() {
         return folder.canonicalize().ok();
     }
-    eprintln!("SKIPPED: the real files are not there ({}); set SNELL_DATA", folder.display());
+    // Not by `eprintln!`, which the test harness hides where a test passes.
+    let line = format!("SKIPPED: the real files are not there ({}); set SNELL_DATA\n", folder.display());
+    std::io::stderr().write_all(line.as_bytes()).unwrap();
     None
 }
