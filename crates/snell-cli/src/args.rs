@@ -125,7 +125,7 @@ pub struct RenderArgs {
 #[command(next_help_heading = "Reading")]
 pub struct ReadingArgs {
     /// Change a value of the scene; may be given many times
-    #[arg(long, value_name = "KEY=VALUE")]
+    #[arg(long, value_name = "KEY=VALUE", value_parser = assignment)]
     pub set: Vec<String>,
     /// Look for models here first; may be given many times
     #[arg(long, value_name = "DIR", value_parser = folder)]
@@ -160,8 +160,8 @@ Examples:
 pub struct InfoArgs {
     /// Scene file, driver file, built-in name, or picture
     pub file: String,
-    /// Print the text of the scene and nothing else
-    #[arg(long)]
+    /// Print the text of the scene, as it is in the file, and nothing else
+    #[arg(long, conflicts_with = "set")]
     pub scene: bool,
     #[command(flatten)]
     pub reading: ReadingArgs,
@@ -228,6 +228,10 @@ pub struct DiffArgs {
 fn named<T: for<'de> serde::Deserialize<'de>>(text: &str) -> Result<T, String> {
     let deserializer: StrDeserializer<'_, ValueError> = text.into_deserializer();
     T::deserialize(deserializer).map_err(|e| e.to_string().replace("variant", "value"))
+}
+
+fn assignment(text: &str) -> Result<String, String> {
+    if text.contains('=') { Ok(text.to_owned()) } else { Err("it has no `=`; like material.glass.eta=2.42".to_owned()) }
 }
 
 fn folder(text: &str) -> Result<PathBuf, String> {

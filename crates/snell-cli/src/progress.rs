@@ -1,10 +1,13 @@
-//! Showing how far a render is: a bar for people, lines of JSON for programs.
+//! Showing what goes on and how far it is: a bar for people, lines of JSON for programs.
 
 use crate::args::ProgressKind;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::json;
 use snell::render::Progress;
+use std::io::IsTerminal;
 use std::sync::Mutex;
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
+use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 /// The bar comes after this time.
@@ -69,6 +72,48 @@ impl Reporter {
     pub fn finish(&self) {
         if let Self::Bar(bar) = self {
             bar.finish_and_clear();
+        }
+    }
+}
+
+/// Says what goes on besides tracing (reading, preparing, writing) while it lasts, if it lasts longer than a moment.
+pub struct Phase {
+    /// Dropped at the end, which ends the thread.
+    over: Option<Sender<()>>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Phase {
+    pub fn start(kind: ProgressKind, quiet: bool, what: &'static str, name: &str) -> Self {
+        match kind {
+            ProgressKind::Json => eprintln!("{}", json!({ "event": what, "name": name })),
+            ProgressKind::Auto if quiet || !std::io::stderr().is_terminal() => {}
+            ProgressKind::Auto => {
+                let (over, is_over) = channel::<()>();
+                let text = format!("{what} {}", crate::say::plain(name));
+                let thread = std::thread::spawn(move || {
+                    let wait = |time| is_over.recv_timeout(time) == Err(RecvTimeoutError::Timeout);
+                    if wait(BAR_DELAY) {
+                        let spinner = ProgressBar::new_spinner().with_message(text);
+                        while wait(Duration::from_millis(100)) {
+                            spinner.tick();
+                        }
+                        spinner.finish_and_clear();
+                    }
+                });
+                return Self { over: Some(over), thread: Some(thread) };
+            }
+        }
+        Self { over: None, thread: None }
+    }
+}
+
+impl Drop for Phase {
+    fn drop(&mut self) {
+        self.over = None;
+        if let Some(thread) = self.thread.take() {
+            // It only draws; there is nothing to do about a failure.
+            let _ = thread.join();
         }
     }
 }

@@ -1,7 +1,7 @@
 //! `snell render`.
 
 use crate::args::{ProgressKind, RenderArgs};
-use crate::progress::{Reporter, short};
+use crate::progress::{Phase, Reporter, short};
 use crate::recipe::Recipe;
 use crate::say::{self, FAILED, Failure, INTERRUPTED, OrFail, Outcome, SCENE, USAGE};
 use serde_json::json;
@@ -44,7 +44,7 @@ pub fn run(args: &RenderArgs) -> Outcome {
     for (name, output) in names.iter().zip(&outputs) {
         let result = match &args.from {
             Some(from) => again(from, args, output),
-            None => Recipe::of(name, args).and_then(|(recipe, loaded)| one(recipe, loaded, args, output)),
+            None => anew(name, args, output),
         };
         match result {
             Ok(()) => {}
@@ -119,6 +119,15 @@ pub fn same_file(a: &Path, b: &Path) -> bool {
     matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
 }
 
+/// Renders a picture of a scene.
+fn anew(name: &str, args: &RenderArgs, output: &Path) -> Outcome {
+    let reading = Phase::start(args.progress, args.quiet, "reading", name);
+    let read = Recipe::of(name, args);
+    drop(reading);
+    let (recipe, loaded) = read?;
+    one(recipe, loaded, args, output)
+}
+
 /// Renders a picture from what another one remembers.
 fn again(from: &Path, args: &RenderArgs, output: &Path) -> Outcome {
     let remembered = picture::read(from).or_fail(FAILED)?.recipe.ok_or_else(|| {
@@ -135,7 +144,9 @@ fn again(from: &Path, args: &RenderArgs, output: &Path) -> Outcome {
 /// Renders one picture.
 fn one(mut recipe: Recipe, mut loaded: Loaded, args: &RenderArgs, output: &Path) -> Outcome {
     let widened = recipe.apply(&mut loaded.scene);
+    let preparing = Phase::start(args.progress, args.quiet, "preparing", &recipe.name);
     let world = loaded.world().or_fail(SCENE)?;
+    drop(preparing);
     let widened = widened.map(|note| Report::warning(WarningCode::WidenedBounds, note));
     let warnings: Vec<Report> = widened.into_iter().chain(loaded.warnings_with(&world)).collect();
     for warning in warnings.iter().take(say::SHOWN) {
@@ -173,6 +184,7 @@ fn one(mut recipe: Recipe, mut loaded: Loaded, args: &RenderArgs, output: &Path)
         return Err(Failure { code: INTERRUPTED, reports: Vec::new() });
     }
 
+    let writing = Phase::start(args.progress, args.quiet, "writing", &output.display().to_string());
     let finished = rendered.film.is_finished();
     let before = recipe.film_sha256.take();
     if finished {
@@ -187,6 +199,7 @@ fn one(mut recipe: Recipe, mut loaded: Loaded, args: &RenderArgs, output: &Path)
     let text = serde_json::to_string(&recipe).unwrap_or_default();
     let written = picture::write(output, format, &rendered.film, encoding, Some(&text));
     RENDERING.store(false, Ordering::Relaxed);
+    drop(writing);
     if let Err(report) = written {
         return Err(Failure::new(FAILED, rescue(report, output, format, &rendered, encoding, &text)));
     }

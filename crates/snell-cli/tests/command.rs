@@ -302,6 +302,7 @@ fn wrong_usage_ends_with_2() {
         &["render", "lecture/default", "--depth", "1001"],
         &["render", "lecture/default", "--threads", "5000"],
         &["render", "lecture/default", "--bits", "12"],
+        &["render", "lecture/default", "--set", "material.glass.eta"],
         &["render", "lecture/default", "--search", "no-such-folder"],
         &["render", "lecture/default", "--size", "9x9", "--crop", "0,0,4000000000,4000000000"],
         &["render", "a/driver.txt", "b/driver.txt", "-o", "out/"],
@@ -347,7 +348,8 @@ fn progress_as_json_is_json() {
     let arguments = [&["render", "lecture/default", "-o", "a.png", "--progress", "json"], TINY].concat();
     let said = stderr(&run(folder.path(), &arguments));
     let events: Vec<serde_json::Value> = said.lines().map(|l| serde_json::from_str(l).unwrap()).collect();
-    assert_eq!(events[0]["event"], "progress");
+    let names: Vec<_> = events.iter().map(|e| e["event"].as_str().unwrap()).collect();
+    assert_eq!(names[..3], ["reading", "preparing", "progress"]);
     let done = events.last().unwrap();
     assert_eq!(done["event"], "done");
     assert_eq!(done["rays"]["camera"], 24 * 24);
@@ -377,7 +379,7 @@ fn interrupted_renders_keep_what_is_done() {
             command(at, &[&arguments[..], &[name]].concat()).stderr(std::process::Stdio::piped()).spawn().unwrap();
         // Once the first tiles are reported, it is running.
         let mut lines = std::io::BufRead::lines(std::io::BufReader::new(child.stderr.take().unwrap()));
-        lines.next().unwrap().unwrap();
+        while !lines.next().unwrap().unwrap().contains("\"progress\"") {}
         let rest = std::thread::spawn(move || lines.map_while(Result::ok).collect::<Vec<_>>());
         let interrupted = Instant::now();
         let kill = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
