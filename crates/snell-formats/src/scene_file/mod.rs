@@ -29,6 +29,9 @@ pub fn parse(source: &Source, syntax: Syntax) -> Result<Scene, Report> {
             let range = e.span().unwrap_or(0..0);
             explain(e.message(), &source.text[range.clone()]).at(source, range)
         }),
+        Syntax::Json if !source.text.trim_start().starts_with('{') => {
+            Err(Report::error("a scene in JSON is an object, and starts with `{`").at(source, 0..0))
+        }
         Syntax::Json => serde_json::from_str(&source.text).map_err(|e| {
             let range = json_range(&source.text, e.line(), e.column());
             let message = e.to_string();

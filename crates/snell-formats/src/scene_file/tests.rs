@@ -64,6 +64,23 @@ fn errors_point_at_what_was_read_and_say_what_to_do() {
 }
 
 #[test]
+fn tables_are_read_by_name_only_and_names_are_given_once() {
+    for (from, to) in [
+        ("[material.glass]\nkd = [0.1, 0.2, 0.3]", "[material]\nglass = [0.9]"),
+        ("[[sphere]]\nname = \"ball\"\ncenter = [0, 0, 0]\nradius = 1\nmaterial = \"glass\"", ""),
+    ] {
+        let text = SMALL.replace(from, to);
+        let text = if to.is_empty() { format!("sphere = [['ball', [0, 0, 0], 1, 'glass']]\n{text}") } else { text };
+        let report = parse(&source(&text), Syntax::Toml).unwrap_err();
+        assert!(report.message.contains("a table, with names") && pointed(&report).starts_with('['), "{report:?}");
+    }
+    let json = to_text(&parse(&source(SMALL), Syntax::Toml).unwrap(), Syntax::Json).unwrap();
+    let twice = json.replace("\"glass\": {", "\"glass\": {}, \"glass\": {");
+    assert!(parse(&source(&twice), Syntax::Json).unwrap_err().message.contains("given twice"));
+    assert!(parse(&source(" []"), Syntax::Json).unwrap_err().message.contains("object"));
+}
+
+#[test]
 fn json_errors_point_too() {
     let json = to_text(&parse(&source(SMALL), Syntax::Toml).unwrap(), Syntax::Json).unwrap();
     let report = parse(&source(&json.replace("\"radius\"", "\"radus\"")), Syntax::Json).unwrap_err();

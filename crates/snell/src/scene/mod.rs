@@ -8,6 +8,7 @@ mod light;
 mod material;
 mod render;
 mod shape;
+mod table;
 mod validate;
 mod warning;
 
@@ -24,10 +25,7 @@ pub use crate::film::transfer::{Rounding, Transfer};
 use crate::film::Rgb;
 use indexmap::IndexMap;
 use schemars::JsonSchema;
-use serde::de::{MapAccess, Visitor};
-use serde::{Deserialize, Deserializer, Serialize};
-use std::fmt;
-use std::marker::PhantomData;
+use serde::{Deserialize, Serialize};
 
 /// The version of the scene format that this library reads and writes.
 pub const SCHEMA_VERSION: u32 = 1;
@@ -48,43 +46,28 @@ pub struct Scene {
     #[serde(default = "one")]
     pub eta_outside: f64,
     /// How the picture is made.
+    #[serde(deserialize_with = "table::one")]
     pub render: Render,
     /// Where it is seen from.
+    #[serde(deserialize_with = "table::one")]
     pub camera: Camera,
     /// Where light comes from.
-    #[serde(default, rename = "light", skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, rename = "light", skip_serializing_if = "Vec::is_empty", deserialize_with = "table::many")]
     pub lights: Vec<Light>,
     /// What things are made of, by name.
-    #[serde(default, rename = "material", skip_serializing_if = "IndexMap::is_empty", deserialize_with = "unique")]
+    #[serde(
+        default,
+        rename = "material",
+        skip_serializing_if = "IndexMap::is_empty",
+        deserialize_with = "table::by_name"
+    )]
     pub materials: IndexMap<String, Material>,
     /// Spheres.
-    #[serde(default, rename = "sphere", skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, rename = "sphere", skip_serializing_if = "Vec::is_empty", deserialize_with = "table::many")]
     pub spheres: Vec<Sphere>,
     /// Triangle meshes.
-    #[serde(default, rename = "mesh", skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, rename = "mesh", skip_serializing_if = "Vec::is_empty", deserialize_with = "table::many")]
     pub meshes: Vec<Mesh>,
-}
-
-/// A map in which no key comes twice. TOML refuses that itself, JSON does not.
-fn unique<'de, D: Deserializer<'de>, V: Deserialize<'de>>(deserializer: D) -> Result<IndexMap<String, V>, D::Error> {
-    struct Unique<V>(PhantomData<V>);
-    impl<'de, V: Deserialize<'de>> Visitor<'de> for Unique<V> {
-        type Value = IndexMap<String, V>;
-        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-            f.write_str("a table of names")
-        }
-        fn visit_map<A: MapAccess<'de>>(self, mut entries: A) -> Result<Self::Value, A::Error> {
-            let mut map = IndexMap::new();
-            while let Some((key, value)) = entries.next_entry::<String, V>()? {
-                if map.contains_key(&key) {
-                    return Err(serde::de::Error::custom(format!("the name `{key}` is given twice")));
-                }
-                map.insert(key, value);
-            }
-            Ok(map)
-        }
-    }
-    deserializer.deserialize_map(Unique(PhantomData))
 }
 
 pub(crate) fn one() -> f64 {
