@@ -61,7 +61,8 @@ impl Recipe {
     pub fn of(name: &str, args: &RenderArgs) -> Result<(Self, Loaded), Failure> {
         let options = LoadOptions::from(&args.reading);
         let loaded = load(name, &options).or_fail(SCENE)?;
-        let folder = absolute(&loaded.folder);
+        // Only models need it; otherwise a picture need not tell where it was made.
+        let folder = if loaded.models.is_empty() { PathBuf::from(".") } else { absolute(&loaded.folder) };
         let recipe = Self {
             snell: env!("CARGO_PKG_VERSION").to_owned(),
             name: name.to_owned(),

@@ -194,6 +194,14 @@ fn a_picture_remembers_its_bits() {
 }
 
 #[test]
+fn the_picture_in_the_readme_is_what_snell_renders() {
+    let folder = tempfile::tempdir().unwrap();
+    let picture = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/pictures/default.png");
+    render(folder.path(), &["--from", picture.to_str().unwrap(), "-o", "again.png"]);
+    run(folder.path(), &["diff", "again.png", picture.to_str().unwrap()]);
+}
+
+#[test]
 fn what_is_read_is_not_written_over() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
