@@ -1,6 +1,5 @@
 //! The lines around the place of a report, cut to a width that a person can read.
 
-use crate::say::plain;
 use miette::{
     Diagnostic, LabeledSpan, MietteError, MietteSpanContents, Severity, SourceCode, SourceSpan, SpanContents,
 };
@@ -65,6 +64,11 @@ impl<'a> Excerpt<'a> {
         });
         Self { report, lines }
     }
+}
+
+/// Text from a file without the characters that would steer a terminal.
+pub fn plain(text: &str) -> String {
+    text.chars().map(|c| if c.is_control() && c != '\n' && c != '\t' { '\u{fffd}' } else { c }).collect()
 }
 
 impl SourceCode for Lines {

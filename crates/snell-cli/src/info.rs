@@ -1,6 +1,7 @@
 //! `snell info`.
 
 use crate::args::InfoArgs;
+use crate::excerpt::plain;
 use crate::progress::short;
 use crate::recipe::Recipe;
 use crate::say::{self, FAILED, Failure, OrFail, Outcome, SCENE};
@@ -22,7 +23,7 @@ pub fn run(args: &InfoArgs) -> Outcome {
         return say::print(&loaded.source.text);
     }
     let world = loaded.world().or_fail(SCENE)?;
-    say::print(&say::plain(&about_scene(&loaded, &world)))?;
+    say::print(&plain(&about_scene(&loaded, &world)))?;
     say::reports(&loaded.warnings_with(&world));
     Ok(())
 }
@@ -59,7 +60,7 @@ fn about_picture(picture: &Picture, args: &InfoArgs) -> Outcome {
     let film = recipe.film_sha256.unwrap_or_else(|| "not finished".to_owned());
     let _ = writeln!(text, "film         {film}");
     let _ = writeln!(text, "again        snell render --from {}", args.file);
-    say::print(&say::plain(&text))
+    say::print(&plain(&text))
 }
 
 /// More spheres than this are counted, not listed.

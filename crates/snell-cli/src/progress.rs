@@ -90,7 +90,7 @@ impl Phase {
             ProgressKind::Auto if quiet || !std::io::stderr().is_terminal() => {}
             ProgressKind::Auto => {
                 let (over, is_over) = channel::<()>();
-                let text = format!("{what} {}", crate::say::plain(name));
+                let text = format!("{what} {}", crate::excerpt::plain(name));
                 let thread = std::thread::spawn(move || {
                     let wait = |time| is_over.recv_timeout(time) == Err(RecvTimeoutError::Timeout);
                     if wait(BAR_DELAY) {

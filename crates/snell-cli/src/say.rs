@@ -1,6 +1,6 @@
 //! Talking to people: results on stdout, everything else on stderr.
 
-use crate::excerpt::Excerpt;
+use crate::excerpt::{Excerpt, plain};
 use miette::{GraphicalReportHandler, GraphicalTheme, ThemeCharacters, ThemeStyles};
 use snell_formats::Report;
 use std::io::{IsTerminal, Write};
@@ -81,11 +81,6 @@ pub fn report(report: &Report) {
         text = plain(&report.to_string());
     }
     eprintln!("{}", text.trim());
-}
-
-/// Text from a file without the characters that would steer a terminal.
-pub fn plain(text: &str) -> String {
-    text.chars().map(|c| if c.is_control() && c != '\n' && c != '\t' { '\u{fffd}' } else { c }).collect()
 }
 
 /// Writes text to stdout. A reader that has gone away (`| head`) is no error.
