@@ -20,13 +20,17 @@ use std::time::Instant;
 
 /// Set by ^C.
 static CANCEL: AtomicBool = AtomicBool::new(false);
-/// Is there a picture to save? Before, ^C ends the program at once.
+/// Is there a part of a picture to save? Before, ^C ends the program at once.
 static RENDERING: AtomicBool = AtomicBool::new(false);
 
 /// The first ^C stops the render and saves what is done; before a render, or the second time, it ends at once.
 fn interrupt() {
-    if !RENDERING.load(Ordering::Relaxed) || CANCEL.swap(true, Ordering::Relaxed) {
+    let something_to_save = RENDERING.load(Ordering::Relaxed);
+    if !something_to_save || CANCEL.swap(true, Ordering::Relaxed) {
         disk::discard_pending();
+        if !something_to_save {
+            eprintln!("stopped before there was anything to save");
+        }
         std::process::exit(INTERRUPTED.into());
     }
 }
@@ -163,7 +167,10 @@ fn one(mut recipe: Recipe, mut loaded: Loaded, args: &RenderArgs, output: &Path)
 
     let reporter = Reporter::new(args.progress, args.quiet, &recipe.name);
     let started = Instant::now();
-    let progress = |p| reporter.update(p);
+    let progress = |p| {
+        RENDERING.store(true, Ordering::Relaxed);
+        reporter.update(p);
+    };
     let options = Options {
         threads: args.threads.into(),
         tile_size: args.tile,
@@ -172,7 +179,6 @@ fn one(mut recipe: Recipe, mut loaded: Loaded, args: &RenderArgs, output: &Path)
         cancel: Some(&CANCEL),
         ..Options::default()
     };
-    RENDERING.store(true, Ordering::Relaxed);
     let rendered = render(&world, &options).map_err(|e| {
         let code = if matches!(e, RenderError::CropOutside { .. }) { USAGE } else { SCENE };
         Failure::new(code, Report::error(e.to_string()))
