@@ -13,6 +13,8 @@ cargo build --locked --release --features run --manifest-path fuzz/Cargo.toml --
 for target in scene driver obj picture; do
     printf '\n── fuzzing %s\n' "$target"
     mkdir -p "fuzz/corpus/$target"
-    "fuzz/target/$host/release/$target" "fuzz/corpus/$target" "fuzz/seeds/$target" \
+    seeds=("fuzz/seeds/$target")
+    [ "$target" != scene ] || seeds+=(scenes/lecture)
+    "fuzz/target/$host/release/$target" "fuzz/corpus/$target" "${seeds[@]}" \
         -max_total_time="${SECONDS_EACH:-60}" -timeout=10 -rss_limit_mb=2048 -max_len=4096 -print_final_stats=1
 done

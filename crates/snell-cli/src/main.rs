@@ -19,7 +19,6 @@ use say::Failure;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    // A closed pipe (`snell scenes | head`) ends the program quietly, like any other one.
     let arguments = Arguments::parse();
     let result = match arguments.command {
         Command::Render(args) => render::run(&args),

@@ -62,7 +62,11 @@ impl Recipe {
         let options = LoadOptions::from(&args.reading);
         let loaded = load(name, &options).or_fail(SCENE)?;
         // Only models need it; otherwise a picture need not tell where it was made.
-        let folder = if loaded.models.is_empty() { PathBuf::from(".") } else { absolute(&loaded.folder) };
+        let (folder, search) = if loaded.models.is_empty() {
+            (PathBuf::from("."), Vec::new())
+        } else {
+            (absolute(&loaded.folder), options.search.iter().map(|folder| absolute(folder)).collect())
+        };
         let recipe = Self {
             snell: env!("CARGO_PKG_VERSION").to_owned(),
             name: name.to_owned(),
@@ -80,7 +84,7 @@ impl Recipe {
             transfer: args.transfer,
             rounding: args.rounding,
             bits: args.bits,
-            search: args.reading.search.iter().map(|folder| absolute(folder)).collect(),
+            search,
             models: loaded
                 .models
                 .iter()

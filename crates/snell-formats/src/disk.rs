@@ -31,7 +31,7 @@ pub fn read(path: &Path, limit: u64) -> Result<Vec<u8>, Report> {
     Ok(bytes)
 }
 
-/// Reads a text; see [`text`]. Bytes that are no UTF-8 (old comments in Latin-1) become `\u{fffd}`, a byte order mark is dropped.
+/// Reads a file of at most `limit` bytes as a [`text`].
 ///
 /// # Errors
 /// As [`read`].
@@ -39,7 +39,8 @@ pub fn read_text(path: &Path, limit: u64) -> Result<Source, Report> {
     read(path, limit).map(|bytes| text(path, &bytes))
 }
 
-/// The bytes of a file as a text.
+/// The bytes of a file as a text. Bytes that are no UTF-8 (old comments in Latin-1) become `\u{fffd}`, a byte order mark is
+/// dropped.
 pub fn text(path: &Path, bytes: &[u8]) -> Source {
     let text = String::from_utf8_lossy(bytes);
     Source::new(path.display().to_string(), text.strip_prefix('\u{feff}').unwrap_or(&text))

@@ -70,8 +70,8 @@ const DECIDES: u32 = 100;
 const HINTS: u32 = 1;
 
 fn evidence<'a>(line: &'a Line<'a>) -> Option<Evidence<'a>> {
-    let numbers = line.rest.iter().map_while(number).count();
     let values: Vec<f64> = line.rest.iter().map_while(number).collect();
+    let numbers = values.len();
     let found = |fits, weight| Some(Evidence { line, fits, weight });
     match line.keyword.text {
         "camera" | "trans" | "load" | "cutoffAngle" => found(&[Course2020], DECIDES),

@@ -195,13 +195,14 @@ fn triangles(corners: &[u32], vertices: &[Vec3], earcut: &mut earcut::Earcut<f64
     if corners.len() == 3 {
         return fan();
     }
-    let points: Vec<Vec3> = corners.iter().map(|&v| vertices[v as usize]).collect();
+    // Seen from the first corner, so that far from the origin no digits are lost.
+    let origin = vertices[corners[0] as usize];
+    let points: Vec<Vec3> = corners.iter().map(|&v| vertices[v as usize] - origin).collect();
     // Newell's normal tells the plane; a fan is right if no triangle of it turns the other way.
     let normal = (0..points.len())
         .map(|i| points[i].cross(points[(i + 1) % points.len()]))
         .fold(Vec3::default(), |sum, c| sum + c);
-    let origin = points[0];
-    let turns_back = points.windows(2).skip(1).any(|w| (w[0] - origin).cross(w[1] - origin).dot(normal) < 0.0);
+    let turns_back = points.windows(2).skip(1).any(|w| w[0].cross(w[1]).dot(normal) < 0.0);
     if !turns_back {
         return fan();
     }
@@ -252,6 +253,7 @@ mod tests {
             "1/9/9 2/9/9 3/9/9 4/9/9",
             "-4 -3 -2 -1",
             "1 2 \\\n 3 4",
+            "1 2\\\n3 4 # a comment joins nothing \\",
         ] {
             assert_eq!(read(&format!("{SQUARE}f {face}")).mesh.faces, [[0, 1, 2], [0, 2, 3]], "{face}");
         }
@@ -281,6 +283,10 @@ mod tests {
         };
         let (vertices, faces) = text.split_at(text.find('f').unwrap());
         assert_eq!(read(&format!("{faces}{vertices}")).mesh.faces, mesh.faces, "also before its vertices");
+        // At 1e9 products of coordinates have lost the last hundred, ten times the area.
+        let moved = mesh.vertices.iter().map(|v| format!("v {} {} 0\n", v.x + 1e9, v.y + 1e9));
+        let far = read(&format!("{}{faces}", moved.collect::<String>()));
+        assert_eq!(far.mesh.faces, mesh.faces, "also far from the origin");
         // Shoelace: 6. Every triangle counter-clockwise, and the areas of each polygon add up to it.
         for polygon in 0..4 {
             let areas = [area(2 * polygon), area(2 * polygon + 1)];

@@ -16,7 +16,7 @@ const MOST_FOLDERS: usize = 200;
 pub struct Found {
     /// Where it lies.
     pub path: PathBuf,
-    /// Whether another file of the same name was as near.
+    /// Whether a different file of the same name lies in another of the folders.
     pub warning: Option<Report>,
 }
 

@@ -115,7 +115,9 @@ pub fn read(path: &Path) -> Result<Picture, Report> {
 fn checked_pixels(width: u64, height: u64) -> Result<usize, String> {
     match width.checked_mul(height) {
         Some(0) | None => Err(format!("{width} x {height} is no size")),
-        Some(pixels) if pixels > MAX_PIXELS => Err(format!("{width} x {height} pixels are too many")),
+        Some(pixels) if pixels > MAX_PIXELS => {
+            Err(format!("{width} x {height} pixels are too many, at most {MAX_PIXELS} are read"))
+        }
         Some(pixels) => Ok(pixels as usize),
     }
 }

@@ -14,7 +14,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 const GENERATION_BUDGET: usize = 1 << 16;
 
 /// A pixel with more rays than this gets no more; the rest counts as lost light. It bounds the time that a pixel takes, and
-/// what one pixel's generation takes of memory, some 40 MB.
+/// what its generation takes of memory: a ray has 13 numbers of 8 bytes and some small ones, so 30 MB a queue.
 const RAYS_PER_PIXEL: u32 = 1 << 18;
 
 /// Sees every generation when it is done, with its rays, hits and contributions.

@@ -20,7 +20,8 @@ use crate::lanes::{Lanes, Mask};
 use crate::optics::snell;
 use crate::scene::Integrator;
 
-/// No hit nearer than this counts. The lecture's own number, in scene units; it is used nowhere else.
+/// No hit nearer than this counts. The lecture's own number, in scene units; it
+/// belongs to the models of this file only.
 pub(crate) const T_MIN: f64 = 1e-5;
 
 /// Rays that leave a batch of hits.

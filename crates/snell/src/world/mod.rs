@@ -3,9 +3,8 @@
 mod camera;
 mod intersect;
 
-pub use intersect::NO_PRIMITIVE;
-
 pub use camera::CameraFrame;
+pub use intersect::NO_PRIMITIVE;
 
 use crate::film::Rgb;
 use crate::geometry::bvh::Bvh;
