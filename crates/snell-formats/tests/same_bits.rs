@@ -95,7 +95,7 @@ fn threads_tiles_lanes_and_tree_do_not_matter() {
         let world = World::new(&scene).unwrap();
         let expected = render(&world, &Options { threads: 1, ..Options::default() }).unwrap();
         let expected_hash = hash(&expected.film);
-        for lanes in [LaneWidth::One, LaneWidth::Four] {
+        for lanes in LaneWidth::ALL {
             for threads in [1, 2, 7] {
                 for tile_size in [8, 16, 33] {
                     let rendered =
@@ -107,7 +107,7 @@ fn threads_tiles_lanes_and_tree_do_not_matter() {
             }
         }
         let brute = world.brute_force();
-        for lanes in [LaneWidth::One, LaneWidth::Four] {
+        for lanes in LaneWidth::ALL {
             let film = picture(&brute, &Options { lanes, ..Options::default() });
             assert_eq!(hash(&film), expected_hash, "{name}, brute force, {lanes:?}");
         }

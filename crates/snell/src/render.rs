@@ -1,22 +1,14 @@
-//! From a world to a film: tiles, threads, progress, cancellation. The only place with threads.
+//! From a world to a film: tiles, workers, progress, cancellation.
 
 use crate::film::{Crop, Film, FilmTooLarge, Rgb};
-use crate::lanes::{ArrayLanes, Lanes};
+pub use crate::lanes::LaneWidth;
+use crate::lanes::{Kernel, Lanes, dispatch};
+use crate::threads;
 use crate::trace::{RayTree, Recorder, Statistics, Tracer};
 use crate::world::World;
 use std::fmt;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-
-/// How many numbers a kernel computes together. The picture does not depend on it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum LaneWidth {
-    /// One.
-    #[default]
-    One,
-    /// Four, as plain arrays.
-    Four,
-}
 
 /// How to render; nothing here changes a bit of the picture but `crop`, which cuts it.
 #[derive(Clone, Copy)]
@@ -37,7 +29,7 @@ pub struct Options<'a> {
 
 impl Default for Options<'_> {
     fn default() -> Self {
-        Self { threads: 0, tile_size: 16, lanes: LaneWidth::One, crop: None, progress: None, cancel: None }
+        Self { threads: 0, tile_size: 16, lanes: LaneWidth::best(), crop: None, progress: None, cancel: None }
     }
 }
 
@@ -110,10 +102,7 @@ pub fn render(world: &World, options: &Options<'_>) -> Result<Rendered, RenderEr
         result: Mutex::new(Rendered { film: Film::new(size, crop)?, statistics: Statistics::default() }),
         pixels: AtomicU64::new(0),
     };
-    match options.lanes {
-        LaneWidth::One => shared.work::<f64>(),
-        LaneWidth::Four => shared.work::<ArrayLanes<4>>(),
-    }
+    shared.work();
     // A poisoned lock means that a worker panicked, which rayon has already passed on.
     Ok(shared.result.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner))
 }
@@ -128,6 +117,17 @@ pub fn trace_pixel(world: &World, x: u32, y: u32) -> Option<(Rgb, RayTree)> {
     Some((radiance, tracer.observer.tree))
 }
 
+/// What one thread does.
+struct Worker<'a>(&'a Shared<'a>);
+
+impl Kernel for Worker<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        self.0.worker::<L>();
+    }
+}
+
 struct Shared<'a> {
     world: &'a World,
     options: &'a Options<'a>,
@@ -139,23 +139,10 @@ struct Shared<'a> {
 }
 
 impl Shared<'_> {
-    fn work<L: Lanes>(&self) {
-        if self.options.threads == 1 {
-            self.worker::<L>();
-            return;
-        }
-        // One worker per thread of the pool. Without a pool (WASM has no threads) the caller does the work.
-        let threads = match self.options.threads {
-            0 => 0,
-            // More threads than tiles have nothing to do.
-            asked => asked.min(usize::try_from(self.tiles()).unwrap_or(asked)),
-        };
-        match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
-            Ok(pool) => {
-                pool.broadcast(|_| self.worker::<L>());
-            }
-            Err(_) => self.worker::<L>(),
-        }
+    fn work(&self) {
+        // More threads than tiles have nothing to do.
+        let most = usize::try_from(self.tiles()).unwrap_or(usize::MAX);
+        threads::run(self.options.threads.min(most), || dispatch(self.options.lanes, Worker(self)));
     }
 
     fn tile_size(&self) -> u64 {
@@ -166,6 +153,7 @@ impl Shared<'_> {
         u64::from(self.crop.width).div_ceil(self.tile_size()) * u64::from(self.crop.height).div_ceil(self.tile_size())
     }
 
+    #[inline(always)]
     fn worker<L: Lanes>(&self) {
         let cancel = self.options.cancel;
         let mut tracer = Tracer::<L, ()>::new(self.world, cancel, ());

@@ -1,6 +1,6 @@
 //! Linear colour.
 
-use crate::lanes::Lanes;
+use crate::lanes::{Lanes, MAX_WIDTH};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Error, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -72,7 +72,12 @@ impl<L: Lanes> Rgb<L> {
     /// `value(lane)` in each lane.
     #[inline(always)]
     pub fn from_fn(value: impl Fn(usize) -> Rgb<f64>) -> Self {
-        Self::new(L::from_fn(|i| value(i).r), L::from_fn(|i| value(i).g), L::from_fn(|i| value(i).b))
+        let mut columns = [[0.0; MAX_WIDTH]; 3];
+        for lane in 0..L::WIDTH {
+            let Rgb { r, g, b } = value(lane);
+            (columns[0][lane], columns[1][lane], columns[2][lane]) = (r, g, b);
+        }
+        Self::new(L::load(&columns[0]), L::load(&columns[1]), L::load(&columns[2]))
     }
 
     /// The colour in one lane.

@@ -1,7 +1,6 @@
 //! Axis-aligned boxes: `f64` for measuring a scene, `f32` rounded outward for the tree.
 
-use super::{RayFrame, Vec3};
-use crate::lanes::Lanes;
+use super::Vec3;
 
 /// An axis-aligned box in `f64`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,23 +57,6 @@ impl OuterBox {
             max: [b.max.x, b.max.y, b.max.z].map(|v| round_up(v + margin)),
         }
     }
-
-    /// Distance at which each ray enters the box, and whether it meets the box between `t_min` and `t_max`.
-    ///
-    /// The slab test of Kay and Kajiya (1986) in `f64` on the widened corners.
-    #[inline(always)]
-    pub fn enter<L: Lanes>(&self, origin: Vec3<L>, frame: &RayFrame<L>, t_min: L, t_max: L) -> (L, L::Mask) {
-        let slab = |low: f32, high: f32, origin: L, inv: L| {
-            let (a, b) = ((L::splat(f64::from(low)) - origin) * inv, (L::splat(f64::from(high)) - origin) * inv);
-            (a.min(b), a.max(b))
-        };
-        let (near_x, far_x) = slab(self.min[0], self.max[0], origin.x, frame.inv_dir.x);
-        let (near_y, far_y) = slab(self.min[1], self.max[1], origin.y, frame.inv_dir.y);
-        let (near_z, far_z) = slab(self.min[2], self.max[2], origin.z, frame.inv_dir.z);
-        let near = near_x.max(near_y).max(near_z);
-        let far = far_x.min(far_y).min(far_z);
-        (near, near.max(t_min).le(far.min(t_max)))
-    }
 }
 
 fn round_down(value: f64) -> f32 {
@@ -98,16 +80,5 @@ mod tests {
             prop_assert!(down < value && value < up);
             prop_assert!(up - down <= value.abs() * 2.5e-7 + 1e-40); // two units in the last place of f32
         }
-    }
-
-    #[test]
-    fn a_ray_in_the_plane_of_a_face_enters() {
-        let corners = [Vec3::default(), Vec3::new(1.0, 0.0, 1.0)];
-        let flat = OuterBox::around(&Bounds::of(corners), 1e-14);
-        let dir = Vec3::new(1.0, 0.0, 0.0);
-        let frame = RayFrame::new(dir);
-        let inside = Vec3::new(-1.0, 0.0, 0.5);
-        assert!(flat.enter(inside, &frame, 0.0, 10.0).1);
-        assert!(!flat.enter(Vec3::new(-1.0, 0.1, 0.5), &frame, 0.0, 10.0).1);
     }
 }

@@ -34,7 +34,8 @@ impl TriangleMesh {
     /// Normals of each face's corners: the mean of the unit normals of those faces at the same vertex that lie within
     /// `cutoff` degrees of this face. A mean of unit vectors, so at most of unit length.
     pub fn smooth_normals(&self, cutoff: f64) -> Vec<[Vec3; 3]> {
-        let flat: Vec<Option<Vec3>> = (0..self.faces.len()).map(|f| triangle::normal(self.corners(f))).collect();
+        let normal = |face| Some(triangle::normal(self.corners(face))).filter(|n| n.is_finite());
+        let flat: Vec<Option<Vec3>> = (0..self.faces.len()).map(normal).collect();
         let mut around: Vec<Vec<u32>> = vec![Vec::new(); self.vertices.len()];
         for (face, corners) in self.faces.iter().enumerate() {
             for &vertex in corners {

@@ -11,6 +11,6 @@ pub mod vec3;
 
 pub use bounds::Bounds;
 pub use mesh::TriangleMesh;
-pub use ray::{Ray, RayFrame};
+pub use sphere::Sphere;
 pub use transform::Affine;
 pub use vec3::Vec3;

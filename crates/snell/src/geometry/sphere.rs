@@ -1,6 +1,6 @@
 //! Ray and sphere.
 
-use super::{Bounds, Ray, Vec3};
+use super::{Bounds, Vec3};
 use crate::lanes::{Lanes, Mask};
 
 /// Beyond this ratio of (distance to the centre)² to radius² the textbook discriminant is given up: it has lost
@@ -12,36 +12,46 @@ const FAR: f64 = (1u64 << 24) as f64;
 /// surface by less than `2⁻²⁶·r`.
 pub const MARGIN: f64 = 1.0 / FAR;
 
-/// The box of a sphere, with that margin.
-pub fn bounds(center: Vec3, radius: f64) -> Bounds {
-    let r = radius * (1.0 + MARGIN);
-    let r = Vec3::new(r, r, r);
-    Bounds { min: center - r, max: center + r }
+/// A sphere.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sphere {
+    /// Its middle.
+    pub center: Vec3,
+    /// Its radius; one of 0 is never hit.
+    pub radius: f64,
 }
 
-/// Distance to where the ray enters a sphere, and whether it does.
+impl Sphere {
+    /// Its box, with [`MARGIN`].
+    pub fn bounds(&self) -> Bounds {
+        let r = self.radius * (1.0 + MARGIN);
+        let r = Vec3::new(r, r, r);
+        Bounds { min: self.center - r, max: self.center + r }
+    }
+}
+
+/// Distance to where a ray enters a sphere, and whether it meets it at all, on whichever side of its origin.
 ///
-/// With `T = C − o`, `v = T·d`: a hit where `disc = r² − (T·T − v²) > 0`, at `t = v − √disc`, for `t_min < t < t_max`.
+/// With `T = C − o`, `v = T·d`: a hit where `disc = r² − (T·T − v²) > 0`, at `t = v − √disc`; `dir` of unit length.
 /// Only the near root counts: a ray that starts inside does not hit. This very form is the course's; on its spheres of
 /// radius 1e10 another rounding is visible in 8 bits. For small, far spheres it loses all digits, and `T·T − v²`, the
 /// squared distance of the centre from the ray, is computed as `|T − v·d|²` (Haines, Günther, Akenine-Möller,
 /// *Precision Improvements for Ray/Sphere Intersection*, Ray Tracing Gems, 2019, chapter 7).
 #[inline(always)]
-pub fn intersect<L: Lanes>(ray: &Ray<L>, center: Vec3, radius: f64) -> (L, L::Mask) {
-    let to_center = center.splat() - ray.origin;
-    let v = to_center.dot(ray.dir);
+pub fn intersect<L: Lanes>(origin: Vec3<L>, dir: Vec3<L>, center: Vec3<L>, radius: L) -> (L, L::Mask) {
+    let to_center = center - origin;
+    let v = to_center.dot(dir);
     let r2 = radius * radius;
     let distance2 = to_center.dot(to_center);
     let mut off2 = distance2 - v * v;
-    let far = distance2.gt(L::splat(FAR * r2));
+    let far = distance2.gt(L::splat(FAR) * r2);
     if far.any() {
-        let off = to_center - ray.dir * v;
+        let off = to_center - dir * v;
         off2 = L::select(far, off.dot(off), off2);
     }
-    let disc = L::splat(r2) - off2;
-    let t = v - disc.sqrt();
-    // A negative `disc` makes `t` NaN, and every comparison with NaN is no; zero is a tangent, and no hit.
-    (t, disc.gt(L::splat(0.0)) & t.gt(ray.t_min) & t.lt(ray.t_max))
+    let disc = r2 - off2;
+    // Zero is a tangent, and no hit. A negative `disc` makes `t` NaN.
+    (v - disc.sqrt(), disc.gt(L::splat(0.0)))
 }
 
 #[cfg(test)]
@@ -49,9 +59,8 @@ mod tests {
     use super::*;
 
     fn hit(origin: [f64; 3], dir: [f64; 3], center: [f64; 3], radius: f64) -> Option<f64> {
-        let ray = Ray { origin: origin.into(), dir: Vec3::from(dir).unit(), t_min: 1e-5, t_max: f64::INFINITY };
-        let (t, yes) = intersect(&ray, center.into(), radius);
-        yes.then_some(t)
+        let (t, meets) = intersect::<f64>(origin.into(), Vec3::from(dir).unit(), center.into(), radius);
+        (meets && t > 1e-5).then_some(t)
     }
 
     #[test]

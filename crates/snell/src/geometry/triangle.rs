@@ -1,7 +1,8 @@
 //! Ray and triangle, watertight.
 
-use super::{Ray, RayFrame, Vec3};
-use crate::lanes::Lanes;
+use super::Vec3;
+use super::ray::Shear;
+use crate::lanes::{Lanes, Mask};
 
 /// Where a ray meets a triangle.
 #[derive(Clone, Copy, Debug)]
@@ -12,47 +13,52 @@ pub struct TriangleHit<L: Lanes> {
     pub beta: L,
     /// Weight of the third vertex; the first has `1 − beta − gamma`.
     pub gamma: L,
-    /// Is there a hit at all, from either side?
-    pub hit: L::Mask,
+    /// Does the line of the ray meet the triangle, from either side, before or behind its origin?
+    pub meets: L::Mask,
 }
 
-/// Meets a ray with a triangle, from either side, edges included.
+/// Meets a ray with a triangle, from either side, edges included. `origin` and `vertices` are permuted as `shear` wants
+/// it; the direction need not be of unit length.
 ///
 /// Woop, Benthin and Wald (2013): the vertices are moved into the frame in which the ray is the z axis, and the signs of
 /// three two-dimensional edge functions decide. `fl(a·b) − fl(c·d)` has the sign of the exact value or is zero (rounding is
 /// monotonic), zero counts as inside, and both triangles of an edge see the same two vertices: a ray cannot slip
 /// through a shared edge or vertex. A triangle seen edge on, or without area, is not hit.
 #[inline(always)]
-pub fn intersect<L: Lanes>(ray: &Ray<L>, frame: &RayFrame<L>, vertices: [Vec3; 3]) -> TriangleHit<L> {
+pub fn intersect<L: Lanes>(origin: Vec3<L>, shear: &Shear<L>, vertices: [Vec3<L>; 3]) -> TriangleHit<L> {
     let zero = L::splat(0.0);
-    let [a, b, c] = vertices.map(|v| frame.apply(v.splat() - ray.origin));
+    let [a, b, c] = vertices;
+    let (a, b, c) = (shear.apply(a - origin), shear.apply(b - origin), shear.apply(c - origin));
     let u = c.x * b.y - c.y * b.x;
     let v = a.x * c.y - a.y * c.x;
     let w = b.x * a.y - b.y * a.x;
     let front = u.ge(zero) & v.ge(zero) & w.ge(zero);
     let back = u.le(zero) & v.le(zero) & w.le(zero);
+    let inside = front | back;
+    if !inside.any() {
+        return TriangleHit { t: zero, beta: zero, gamma: zero, meets: inside };
+    }
     let det = u + v + w;
     let t = (u * a.z + v * b.z + w * c.z) / det;
-    let hit = (front | back) & !det.eq(zero) & t.gt(ray.t_min) & t.lt(ray.t_max);
-    TriangleHit { t, beta: v / det, gamma: w / det, hit }
+    TriangleHit { t, beta: v / det, gamma: w / det, meets: inside & !det.eq(zero) }
 }
 
-/// Unit normal by the right-hand rule, or `None` where the triangle has no area.
-pub fn normal(vertices: [Vec3; 3]) -> Option<Vec3> {
-    let [a, b, c] = vertices;
-    let n = (b - a).cross(c - a).unit();
-    n.is_finite().then_some(n)
+/// Unit normal by the right-hand rule; not finite where the triangle has no area.
+#[inline(always)]
+pub fn normal<L: Lanes>([a, b, c]: [Vec3<L>; 3]) -> Vec3<L> {
+    (b - a).cross(c - a).unit()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::ray::{axes, main_axis};
     use proptest::prelude::*;
 
     fn hit(origin: Vec3, dir: Vec3, vertices: [Vec3; 3]) -> Option<(f64, f64, f64)> {
-        let ray = Ray { origin, dir, t_min: 0.0, t_max: f64::INFINITY };
-        let h = intersect(&ray, &RayFrame::new(dir), vertices);
-        h.hit.then_some((h.t, h.beta, h.gamma))
+        let k = axes(main_axis(dir));
+        let h = intersect(origin.permuted(k), &Shear::new(dir.permuted(k)), vertices.map(|v| v.permuted(k)));
+        (h.meets && h.t > 0.0).then_some((h.t, h.beta, h.gamma))
     }
 
     fn v(x: f64, y: f64, z: f64) -> Vec3 {
@@ -70,8 +76,8 @@ mod tests {
         assert!(hit(v(0.2, 0.2, 6.0), dir, unit).is_none(), "behind");
         let flat = [unit[0], unit[1], unit[1]];
         assert!(hit(v(0.5, 0.0, 0.0), dir, flat).is_none(), "no area, no hit");
-        assert_eq!(normal(flat), None);
-        assert_eq!(normal(unit), Some(dir));
+        assert!(!normal(flat).is_finite());
+        assert_eq!(normal(unit), dir);
     }
 
     proptest! {

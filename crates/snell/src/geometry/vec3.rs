@@ -1,6 +1,6 @@
 //! Three-dimensional vectors, one or several lanes wide.
 
-use crate::lanes::Lanes;
+use crate::lanes::{Lanes, MAX_WIDTH};
 use std::ops::{Add, Mul, Neg, Sub};
 
 /// A point, direction or normal. `L` is `f64`, or several lanes of it.
@@ -60,7 +60,12 @@ impl<L: Lanes> Vec3<L> {
     /// `value(lane)` in each lane.
     #[inline(always)]
     pub fn from_fn(value: impl Fn(usize) -> Vec3<f64>) -> Self {
-        Self::new(L::from_fn(|i| value(i).x), L::from_fn(|i| value(i).y), L::from_fn(|i| value(i).z))
+        let mut columns = [[0.0; MAX_WIDTH]; 3];
+        for lane in 0..L::WIDTH {
+            let Vec3 { x, y, z } = value(lane);
+            (columns[0][lane], columns[1][lane], columns[2][lane]) = (x, y, z);
+        }
+        Self::new(L::load(&columns[0]), L::load(&columns[1]), L::load(&columns[2]))
     }
 
     /// The vector in one lane.

@@ -1,10 +1,10 @@
-//! Any width as a plain array: runs on every machine, and proves that the width does not matter.
+//! Any width as a plain array: for machines that lack the instructions, and to prove that the width does not matter.
 
-use super::{Lanes, Mask};
+use super::{Kernel, Lanes, Mask};
 use std::array::from_fn;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
-/// `N` numbers in an array.
+/// `N` numbers in an array, up to 8.
 #[derive(Clone, Copy, Debug)]
 pub struct ArrayLanes<const N: usize>([f64; N]);
 
@@ -48,20 +48,12 @@ impl<const N: usize> Not for ArrayMask<N> {
 
 impl<const N: usize> Mask for ArrayMask<N> {
     #[inline(always)]
-    fn first(count: usize) -> Self {
-        Self(from_fn(|lane| lane < count))
+    fn from_bits(bits: u32) -> Self {
+        Self(from_fn(|lane| bits >> lane & 1 == 1))
     }
     #[inline(always)]
-    fn from_fn(yes: impl FnMut(usize) -> bool) -> Self {
-        Self(from_fn(yes))
-    }
-    #[inline(always)]
-    fn any(self) -> bool {
-        self.0.iter().any(|&yes| yes)
-    }
-    #[inline(always)]
-    fn test(self, lane: usize) -> bool {
-        self.0[lane]
+    fn bits(self) -> u32 {
+        (0..N).fold(0, |bits, lane| bits | u32::from(self.0[lane]) << lane)
     }
 }
 
@@ -69,6 +61,9 @@ impl<const N: usize> Lanes for ArrayLanes<N> {
     type Mask = ArrayMask<N>;
     const WIDTH: usize = N;
 
+    fn call<K: Kernel>(kernel: K) -> K::Output {
+        kernel.run::<Self>()
+    }
     #[inline(always)]
     fn splat(value: f64) -> Self {
         Self([value; N])
@@ -80,6 +75,29 @@ impl<const N: usize> Lanes for ArrayLanes<N> {
     #[inline(always)]
     fn lane(self, lane: usize) -> f64 {
         self.0[lane]
+    }
+    #[inline(always)]
+    fn load(values: &[f64]) -> Self {
+        let values = &values[..N];
+        Self(from_fn(|i| values[i]))
+    }
+    #[inline(always)]
+    fn load_f32(values: &[f32]) -> Self {
+        let values = &values[..N];
+        Self(from_fn(|i| f64::from(values[i])))
+    }
+    #[inline(always)]
+    fn store(self, values: &mut [f64]) {
+        values[..N].copy_from_slice(&self.0);
+    }
+    #[inline(always)]
+    fn compress(self, mask: ArrayMask<N>) -> Self {
+        let (mut packed, mut place) = (self.0, 0);
+        for lane in 0..N {
+            packed[place] = self.0[lane];
+            place += usize::from(mask.0[lane] && place + 1 < N);
+        }
+        Self(packed)
     }
     #[inline(always)]
     fn sqrt(self) -> Self {

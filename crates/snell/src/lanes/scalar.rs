@@ -1,23 +1,15 @@
 //! One lane: a plain `f64`.
 
-use super::{Lanes, Mask};
+use super::{Kernel, Lanes, Mask};
 
 impl Mask for bool {
     #[inline(always)]
-    fn first(count: usize) -> Self {
-        count > 0
+    fn from_bits(bits: u32) -> Self {
+        bits & 1 == 1
     }
     #[inline(always)]
-    fn from_fn(mut yes: impl FnMut(usize) -> bool) -> Self {
-        yes(0)
-    }
-    #[inline(always)]
-    fn any(self) -> bool {
-        self
-    }
-    #[inline(always)]
-    fn test(self, _lane: usize) -> bool {
-        self
+    fn bits(self) -> u32 {
+        u32::from(self)
     }
 }
 
@@ -25,6 +17,9 @@ impl Lanes for f64 {
     type Mask = bool;
     const WIDTH: usize = 1;
 
+    fn call<K: Kernel>(kernel: K) -> K::Output {
+        kernel.run::<Self>()
+    }
     #[inline(always)]
     fn splat(value: f64) -> Self {
         value
@@ -35,6 +30,22 @@ impl Lanes for f64 {
     }
     #[inline(always)]
     fn lane(self, _lane: usize) -> f64 {
+        self
+    }
+    #[inline(always)]
+    fn load(values: &[f64]) -> Self {
+        values[0]
+    }
+    #[inline(always)]
+    fn load_f32(values: &[f32]) -> Self {
+        f64::from(values[0])
+    }
+    #[inline(always)]
+    fn store(self, values: &mut [f64]) {
+        values[0] = self;
+    }
+    #[inline(always)]
+    fn compress(self, _mask: bool) -> Self {
         self
     }
     #[inline(always)]

@@ -1,11 +1,12 @@
 //! One tile, from camera rays to finished pixels.
 
-use super::hits::{Batch, Hits};
-use super::lecture::{self, Child};
-use super::queue::{RayKind, RayQueue};
+use super::hits::Hits;
+use super::lecture;
+use super::queue::{RayKind, RayQueue, Rays, Weight};
 use super::shading::{self, ShadowRays};
 use super::statistics::Statistics;
 use crate::film::Rgb;
+use crate::geometry::bvh::Packet;
 use crate::lanes::{Lanes, Mask};
 use crate::world::World;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -14,7 +15,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 const GENERATION_BUDGET: usize = 1 << 16;
 
 /// A pixel with more rays than this gets no more; the rest counts as lost light. It bounds the time that a pixel takes, and
-/// what its generation takes of memory: a ray has 13 numbers of 8 bytes and some small ones, so 30 MB a queue.
+/// what its generation takes of memory: a ray has 16 numbers of 8 bytes, so 34 MB a queue.
 const RAYS_PER_PIXEL: u32 = 1 << 18;
 
 /// Sees every generation when it is done, with its rays, hits and contributions.
@@ -36,6 +37,7 @@ pub(crate) struct Tracer<'a, L, O> {
     cancel: Option<&'a AtomicBool>,
     pub observer: O,
     pub statistics: Statistics,
+    packet: Box<Packet>,
     hits: Hits,
     shadow: ShadowRays,
     refracted: RayQueue,
@@ -57,6 +59,7 @@ impl<'a, L: Lanes, O: Observer> Tracer<'a, L, O> {
             cancel,
             observer,
             statistics: Statistics::default(),
+            packet: Box::default(),
             hits: Hits::default(),
             shadow: ShadowRays::default(),
             refracted: RayQueue::default(),
@@ -71,6 +74,7 @@ impl<'a, L: Lanes, O: Observer> Tracer<'a, L, O> {
 
     /// Traces some pixels of the whole picture, given by column and row, and returns their radiance in the same order;
     /// `None` if it was cancelled on the way.
+    #[inline(always)]
     pub fn trace(&mut self, pixels: &[(u32, u32)]) -> Option<&[Rgb]> {
         let count = pixels.len();
         self.radiance.clear();
@@ -80,11 +84,7 @@ impl<'a, L: Lanes, O: Observer> Tracer<'a, L, O> {
         self.lost.clear();
         self.lost.resize(count, 0.0);
 
-        let mut camera_rays = self.empty_queue();
-        for (i, &(x, y)) in pixels.iter().enumerate() {
-            let (origin, dir) = self.world.camera.ray(x, y);
-            camera_rays.push_camera_ray(i as u32, origin, dir, lecture::T_MIN);
-        }
+        let camera_rays = self.camera_rays(pixels);
         self.waiting.push((0, camera_rays));
         while let Some((depth, queue)) = self.waiting.pop() {
             if self.cancel.is_some_and(|c| c.load(Ordering::Relaxed)) {
@@ -99,6 +99,28 @@ impl<'a, L: Lanes, O: Observer> Tracer<'a, L, O> {
         Some(&self.radiance)
     }
 
+    #[inline(always)]
+    fn camera_rays(&mut self, pixels: &[(u32, u32)]) -> RayQueue {
+        let mut queue = self.empty_queue();
+        let white = Rgb::gray(1.0).splat();
+        for (group, some) in pixels.chunks(L::WIDTH).enumerate() {
+            let pixel = |lane: usize| some.get(lane).copied().unwrap_or_default();
+            let (x, y) = (L::from_fn(|i| f64::from(pixel(i).0)), L::from_fn(|i| f64::from(pixel(i).1)));
+            let (origin, dir) = self.world.camera.rays(x, y);
+            let rays = Rays {
+                origin,
+                dir,
+                t_min: L::splat(lecture::T_MIN),
+                weight: Weight { attenuation: white, factor: white },
+                pixel: L::from_fn(|lane| (group * L::WIDTH + lane) as f64),
+                source: L::splat(-1.0),
+                parent: L::splat(0.0),
+            };
+            queue.push(RayKind::Camera, L::Mask::first(some.len()), &rays);
+        }
+        queue
+    }
+
     fn empty_queue(&mut self) -> RayQueue {
         let mut queue = self.spare.pop().unwrap_or_default();
         queue.clear();
@@ -108,18 +130,23 @@ impl<'a, L: Lanes, O: Observer> Tracer<'a, L, O> {
     /// Lets a generation wait, in two parts if it is large. Splitting goes by pixels and keeps the order of rays, so no
     /// pixel sees a difference.
     fn enqueue(&mut self, depth: u32, queue: RayQueue) {
-        let (Some(&low), Some(&high)) = (queue.pixel.iter().min(), queue.pixel.iter().max()) else {
-            self.spare.push(queue);
+        if queue.len() <= GENERATION_BUDGET {
+            if queue.len() == 0 {
+                self.spare.push(queue);
+            } else {
+                self.waiting.push((depth, queue));
+            }
             return;
-        };
-        if queue.len() <= GENERATION_BUDGET || low == high {
+        }
+        let (low, high) = queue.pixels().fold((usize::MAX, 0), |(low, high), p| (low.min(p), high.max(p)));
+        if low == high {
             self.waiting.push((depth, queue));
             return;
         }
         let middle = low + (high - low) / 2;
         let mut halves = [self.empty_queue(), self.empty_queue()];
         for row in 0..queue.len() {
-            halves[usize::from(queue.pixel[row] > middle)].copy_row(&queue, row);
+            halves[usize::from(queue.pixel(row) > middle)].copy_row(&queue, row);
         }
         self.spare.push(queue);
         let [first, second] = halves;
@@ -128,45 +155,36 @@ impl<'a, L: Lanes, O: Observer> Tracer<'a, L, O> {
     }
 
     /// Traces one generation, adds what it contributes, and returns its children.
+    #[inline(always)]
     fn generation(&mut self, depth: u32, queue: &RayQueue) -> RayQueue {
-        for (&kind, &pixel) in queue.kind.iter().zip(&queue.pixel) {
-            self.statistics.rays.add(kind);
-            self.rays_of[pixel as usize] += 1;
+        for pixel in queue.pixels() {
+            self.rays_of[pixel] += 1;
         }
+        self.statistics.rays.add(queue.counts());
         self.statistics.count_generation(depth, queue.len() as u64);
 
-        self.hits.find::<L>(self.world, queue);
-        let shadow_rays = shading::local_colors::<L>(self.world, queue, &mut self.hits, &mut self.shadow);
+        self.hits.find::<L>(self.world, queue, &mut self.packet);
+        let shadow_rays = shading::local_colors::<L>(self.world, &mut self.hits, &mut self.shadow, &mut self.packet);
         self.statistics.rays.shadow += shadow_rays as u64;
-        for start in (0..self.hits.len()).step_by(L::WIDTH) {
-            let batch = Batch::new(self.world, queue, &self.hits, start);
-            let (active, added) = (batch.active::<L>(), lecture::contribution::<L>(batch));
-            self.hits.contribution.compress(active, added.into());
-        }
-        for (row, &ray) in self.hits.ray.iter().enumerate() {
-            let pixel = &mut self.radiance[queue.pixel[ray as usize] as usize];
-            *pixel = *pixel + Rgb::from(self.hits.contribution.row(row));
-        }
-        self.observer.generation(queue, &self.hits);
-
         let mut children = self.empty_queue();
-        self.spawn(queue, &mut children);
-        self.limit(depth, &mut children);
-        children
-    }
-
-    /// The children of all hits: the mirror rays, then the refracted rays, each in their parents' order.
-    fn spawn(&mut self, queue: &RayQueue, children: &mut RayQueue) {
         self.refracted.clear();
         for start in (0..self.hits.len()).step_by(L::WIDTH) {
-            let batch = Batch::new(self.world, queue, &self.hits, start);
-            push(children, RayKind::Mirror, &lecture::mirror_ray::<L>(batch), queue, &self.hits, start);
-            let exit = lecture::exit_ray::<L>(batch);
-            push(&mut self.refracted, RayKind::Refracted, &exit, queue, &self.hits, start);
+            let batch = self.hits.batch::<L>(self.world, start);
+            let (sends_mirror, mirror) = lecture::mirror_ray(&batch);
+            let (sends_exit, exit) = lecture::exit_ray(&batch);
+            let contribution = lecture::contribution(&batch);
+            children.push(RayKind::Mirror, sends_mirror, &mirror);
+            self.refracted.push(RayKind::Refracted, sends_exit, &exit);
+            self.hits.set_contribution(start, contribution);
         }
-        for row in 0..self.refracted.len() {
-            children.copy_row(&self.refracted, row);
+        children.append(&self.refracted);
+        for row in 0..self.hits.len() {
+            let pixel = &mut self.radiance[self.hits.pixel(row)];
+            *pixel = *pixel + self.hits.contribution(row);
         }
+        self.observer.generation(queue, &self.hits);
+        self.limit(depth, &mut children);
+        children
     }
 
     /// Ends what is beyond the depth limit or the limit of rays per pixel, and counts it as lost.
@@ -179,9 +197,9 @@ impl<'a, L: Lanes, O: Observer> Tracer<'a, L, O> {
         let mut kept = self.empty_queue();
         let mut planned = if too_deep { Vec::new() } else { self.rays_of.clone() };
         for row in 0..children.len() {
-            let pixel = children.pixel[row] as usize;
+            let pixel = children.pixel(row);
             if too_deep || planned[pixel] >= RAYS_PER_PIXEL {
-                let Rgb { r, g, b } = children.throughput(row);
+                let Rgb { r, g, b } = children.rays::<f64>(row).weight.throughput();
                 self.lost[pixel] += Rgb::new(r.abs(), g.abs(), b.abs()).mean();
                 self.statistics.lost.rays += 1;
             } else {
@@ -200,22 +218,5 @@ impl<'a, L: Lanes, O: Observer> Tracer<'a, L, O> {
                 self.statistics.lost.add(u64::from(y) * width + u64::from(x), lost);
             }
         }
-    }
-}
-
-/// Appends the children of some hits to a queue.
-#[inline(always)]
-fn push<L: Lanes>(to: &mut RayQueue, kind: RayKind, child: &Child<L>, parents: &RayQueue, hits: &Hits, start: usize) {
-    to.origin.compress(child.exists, child.origin.into());
-    to.dir.compress(child.exists, child.dir.into());
-    to.attenuation.compress(child.exists, child.weight.attenuation.into());
-    to.factor.compress(child.exists, child.weight.factor.into());
-    for lane in (0..L::WIDTH).filter(|&i| child.exists.test(i)) {
-        let ray = hits.ray[start + lane];
-        to.t_min.push(lecture::T_MIN);
-        to.pixel.push(parents.pixel[ray as usize]);
-        to.source.push(hits.primitive[start + lane]);
-        to.kind.push(kind);
-        to.parent.push(ray);
     }
 }

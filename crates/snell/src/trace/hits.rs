@@ -1,72 +1,142 @@
 //! The hits of a generation as columns, and a view of several of them at once.
 
-use super::queue::{Columns, RayQueue, Weight};
+use super::queue::{RayQueue, Rays, Weight};
 use crate::film::Rgb;
 use crate::geometry::Vec3;
-use crate::lanes::{Lanes, Mask};
+use crate::geometry::bvh::{PACKET, Packet};
+use crate::lanes::{Columns, Lanes, MAX_WIDTH, Mask};
 use crate::scene::Material;
 use crate::world::World;
+
+/// Columns of the hits as they are found.
+const RAY: usize = 0;
+const PIXEL: usize = 1;
+const PRIMITIVE: usize = 2;
+const T: usize = 3;
+const POINT: usize = 4;
+const WO: usize = 7;
+const ATTENUATION: usize = 10;
+
+/// Columns of what is worked out about them.
+const NORMAL: usize = 0;
+const MATERIAL: usize = 3;
+const LOCAL: usize = 4;
+const CONTRIBUTION: usize = 7;
 
 /// The hits of a generation, compacted, in the order of their rays.
 #[derive(Debug, Default)]
 pub(crate) struct Hits {
-    /// Row of the ray in its queue.
-    pub ray: Vec<u32>,
-    pub primitive: Vec<u32>,
-    pub t: Vec<f64>,
-    pub point: Columns,
-    /// Of unit length, facing the ray.
-    pub normal: Columns,
-    /// Towards where the ray came from.
-    pub wo: Columns,
-    /// The local colour while it is summed.
-    pub local: Columns,
-    /// What the hit adds to its pixel.
-    pub contribution: Columns,
+    found: Columns<16>,
+    surface: Columns<10>,
 }
 
 impl Hits {
+    #[inline(always)]
     pub fn len(&self) -> usize {
-        self.ray.len()
+        self.found.len()
     }
 
-    pub fn clear(&mut self) {
-        let Self { ray, primitive, t, point, normal, wo, local, contribution } = self;
-        ray.clear();
-        primitive.clear();
-        t.clear();
-        for columns in [point, normal, wo, local, contribution] {
-            columns.clear();
-        }
-    }
-
-    /// Finds the closest hits of all rays.
-    pub fn find<L: Lanes>(&mut self, world: &World, queue: &RayQueue) {
-        self.clear();
-        for start in (0..queue.len()).step_by(L::WIDTH) {
-            let (ray, source, active) = queue.rays::<L>(start);
-            let found = world.intersect(&ray, source, active);
-            if !found.hit.any() {
-                continue;
-            }
-            found.t.compress(found.hit, &mut self.t);
-            self.point.compress(found.hit, ray.at(found.t).into());
-            self.wo.compress(found.hit, (-ray.dir).into());
-            for lane in (0..L::WIDTH).filter(|&i| found.hit.test(i)) {
-                self.ray.push((start + lane) as u32);
-                self.primitive.push(found.primitive.lane(lane) as u32);
+    /// Finds the closest hits of all rays, and what surface is there.
+    #[inline(always)]
+    pub fn find<L: Lanes>(&mut self, world: &World, queue: &RayQueue, packet: &mut Packet) {
+        self.found.clear();
+        for first in (0..queue.len()).step_by(PACKET) {
+            let rays = queue.fill::<L>(packet, first);
+            let hit = world.tree.intersect::<L, false>(packet, rays);
+            for start in (0..PACKET).step_by(L::WIDTH) {
+                let mask = L::Mask::from_bits((hit >> start) as u32);
+                if !mask.any() {
+                    continue;
+                }
+                let (t, primitive) = (L::load(&packet.t[start..]), L::load(&packet.primitive[start..]));
+                let Rays { origin, dir, weight, pixel, .. } = queue.rays::<L>(first + start);
+                let row = L::from_fn(|lane| (first + start + lane) as f64);
+                let (p, wo) = (origin + dir * t, -dir);
+                let Weight { attenuation: a, factor: f } = weight;
+                let columns = [row, pixel, primitive, t, p.x, p.y, p.z, wo.x, wo.y, wo.z, a.r, a.g, a.b, f.r, f.g, f.b];
+                self.found.push(mask, columns);
             }
         }
-        for row in 0..self.len() {
-            let (point, dir) = (self.point.row(row).into(), -Vec3::from(self.wo.row(row)));
-            self.normal.push(world.facing_normal(self.primitive[row], point, dir).into());
-        }
+        self.surface.clear();
         for start in (0..self.len()).step_by(L::WIDTH) {
-            let active = L::Mask::first(self.len() - start);
-            let unit = self.normal.vector::<L>(start).unit();
-            self.normal.overwrite(start, active, unit.into());
+            let (mut primitives, mut materials) = ([0; MAX_WIDTH], [0.0; MAX_WIDTH]);
+            for lane in 0..L::WIDTH.min(self.len() - start) {
+                primitives[lane] = self.primitive(start + lane) as usize;
+                materials[lane] = f64::from(world.material_of(primitives[lane]));
+            }
+            let [x, y, z] = self.found.group(POINT, start);
+            let [wx, wy, wz] = self.found.group(WO, start);
+            let normal = world.facing_normals::<L>(&primitives, Vec3::new(x, y, z), -Vec3::new(wx, wy, wz)).unit();
+            let zero = L::splat(0.0);
+            let row = [normal.x, normal.y, normal.z, L::load(&materials), zero, zero, zero, zero, zero, zero];
+            self.surface.push(L::Mask::first(self.len() - start), row);
         }
     }
+
+    /// Row of the ray of a hit in its queue.
+    pub fn ray(&self, row: usize) -> usize {
+        self.found.at(RAY, row) as usize
+    }
+
+    #[inline(always)]
+    pub fn pixel(&self, row: usize) -> usize {
+        self.found.at(PIXEL, row) as usize
+    }
+
+    #[inline(always)]
+    pub fn primitive(&self, row: usize) -> u32 {
+        self.found.at(PRIMITIVE, row) as u32
+    }
+
+    pub fn t(&self, row: usize) -> f64 {
+        self.found.at(T, row)
+    }
+
+    /// Of unit length, facing the ray.
+    pub fn normal(&self, row: usize) -> Vec3 {
+        let at = |i| self.surface.at(NORMAL + i, row);
+        Vec3::new(at(0), at(1), at(2))
+    }
+
+    /// What the hit adds to its pixel.
+    #[inline(always)]
+    pub fn contribution(&self, row: usize) -> Rgb {
+        let at = |i| self.surface.at(CONTRIBUTION + i, row);
+        Rgb::new(at(0), at(1), at(2))
+    }
+
+    /// Replaces the local colour of a batch.
+    #[inline(always)]
+    pub fn set_local_color<L: Lanes>(&mut self, start: usize, color: Rgb<L>) {
+        self.surface.replace::<L, 3>(LOCAL, start, color.into());
+    }
+
+    /// Says what a batch adds to its pixels.
+    #[inline(always)]
+    pub fn set_contribution<L: Lanes>(&mut self, start: usize, color: Rgb<L>) {
+        self.surface.replace::<L, 3>(CONTRIBUTION, start, color.into());
+    }
+
+    /// The hits from one row on.
+    #[inline(always)]
+    pub fn batch<'a, L: Lanes>(&'a self, world: &'a World, start: usize) -> Batch<'a, L> {
+        let active = L::Mask::first(self.len() - start);
+        let material = self.surface.lanes::<L>(MATERIAL, start);
+        let first = self.surface.at(MATERIAL, start);
+        let one_material = !(active & !material.eq(L::splat(first))).any();
+        Batch { world, hits: self, start, active, one_material }
+    }
+}
+
+/// The hits from one row on, one in each lane. Lanes behind the last hit are not active and of no meaning.
+#[derive(Clone, Copy)]
+pub(crate) struct Batch<'a, L: Lanes> {
+    pub world: &'a World,
+    hits: &'a Hits,
+    start: usize,
+    pub active: L::Mask,
+    /// Neighbouring hits mostly have the same material: then its numbers need not be gathered.
+    one_material: bool,
 }
 
 /// The coefficients of a surface that decide how light goes on.
@@ -76,94 +146,99 @@ pub(crate) struct Coefficients<L: Lanes> {
     pub ko: Rgb<L>,
 }
 
-/// The hits from one row on, one in each lane. Lanes beyond the end repeat the last hit and are not active.
-#[derive(Clone, Copy)]
-pub(crate) struct Batch<'a> {
-    pub world: &'a World,
-    queue: &'a RayQueue,
-    hits: &'a Hits,
-    start: usize,
-}
-
-impl<'a> Batch<'a> {
-    pub fn new(world: &'a World, queue: &'a RayQueue, hits: &'a Hits, start: usize) -> Self {
-        Self { world, queue, hits, start }
+impl<L: Lanes> Batch<'_, L> {
+    #[inline(always)]
+    fn found(&self, column: usize) -> Vec3<L> {
+        let [x, y, z] = self.hits.found.group(column, self.start);
+        Vec3::new(x, y, z)
     }
 
     #[inline(always)]
-    pub fn active<L: Lanes>(self) -> L::Mask {
-        L::Mask::first(self.hits.len() - self.start)
+    pub fn point(&self) -> Vec3<L> {
+        self.found(POINT)
+    }
+
+    /// Towards where the ray came from.
+    #[inline(always)]
+    pub fn wo(&self) -> Vec3<L> {
+        self.found(WO)
+    }
+
+    /// Of unit length, facing the ray.
+    #[inline(always)]
+    pub fn normal(&self) -> Vec3<L> {
+        let [x, y, z] = self.hits.surface.group(NORMAL, self.start);
+        Vec3::new(x, y, z)
     }
 
     #[inline(always)]
-    pub fn point<L: Lanes>(self) -> Vec3<L> {
-        self.hits.point.vector(self.start)
+    pub fn local_color(&self) -> Rgb<L> {
+        let [r, g, b] = self.hits.surface.group(LOCAL, self.start);
+        Rgb::new(r, g, b)
     }
 
     #[inline(always)]
-    pub fn normal<L: Lanes>(self) -> Vec3<L> {
-        self.hits.normal.vector(self.start)
+    pub fn ray(&self) -> L {
+        self.hits.found.lanes(RAY, self.start)
     }
 
     #[inline(always)]
-    pub fn wo<L: Lanes>(self) -> Vec3<L> {
-        self.hits.wo.vector(self.start)
+    pub fn pixel(&self) -> L {
+        self.hits.found.lanes(PIXEL, self.start)
     }
 
     #[inline(always)]
-    pub fn local_color<L: Lanes>(self) -> Rgb<L> {
-        self.hits.local.color(self.start)
+    pub fn primitive(&self) -> L {
+        self.hits.found.lanes(PRIMITIVE, self.start)
     }
 
     /// What the rays that hit here carry.
     #[inline(always)]
-    pub fn weight<L: Lanes>(self) -> Weight<L> {
-        let ray = |lane: usize| self.hits.ray[self.row(lane)] as usize;
-        Weight {
-            attenuation: Rgb::from_fn(|i| self.queue.attenuation.row(ray(i)).into()),
-            factor: Rgb::from_fn(|i| self.queue.factor.row(ray(i)).into()),
-        }
+    pub fn weight(&self) -> Weight<L> {
+        let [r, g, b, fr, fg, fb] = self.hits.found.group(ATTENUATION, self.start);
+        Weight { attenuation: Rgb::new(r, g, b), factor: Rgb::new(fr, fg, fb) }
     }
 
     #[inline(always)]
-    pub fn coefficients<L: Lanes>(self) -> Coefficients<L> {
+    pub fn coefficients(&self) -> Coefficients<L> {
         Coefficients { kr: self.material_color(|m| m.kr), ko: self.material_color(|m| m.ko) }
     }
 
     #[inline(always)]
-    pub fn material<L: Lanes>(self, value: impl Fn(&Material) -> f64) -> L {
-        L::from_fn(|i| value(self.material_of(i)))
+    pub fn material(&self, value: impl Fn(&Material) -> f64) -> L {
+        if self.one_material {
+            L::splat(value(self.material_of(0)))
+        } else {
+            L::from_fn(|lane| value(self.material_of(lane)))
+        }
     }
 
     #[inline(always)]
-    pub fn material_color<L: Lanes>(self, value: impl Fn(&Material) -> Rgb) -> Rgb<L> {
-        Rgb::from_fn(|i| value(self.material_of(i)))
+    pub fn material_color(&self, value: impl Fn(&Material) -> Rgb) -> Rgb<L> {
+        if self.one_material {
+            value(self.material_of(0)).splat()
+        } else {
+            Rgb::from_fn(|lane| value(self.material_of(lane)))
+        }
     }
 
     #[inline(always)]
-    pub fn is_sphere<L: Lanes>(self) -> L::Mask {
-        let spheres = self.world.spheres.len();
-        L::Mask::from_fn(|i| self.primitive(i) < spheres)
+    fn material_of(&self, lane: usize) -> &Material {
+        let row = (self.start + lane).min(self.hits.len() - 1);
+        &self.world.materials[self.hits.surface.at(MATERIAL, row) as usize]
+    }
+
+    #[inline(always)]
+    pub fn is_sphere(&self) -> L::Mask {
+        self.primitive().lt(L::splat(self.world.spheres.len() as f64))
     }
 
     /// Centre of the sphere that was hit; for a triangle any point, which nobody looks at.
     #[inline(always)]
-    pub fn center<L: Lanes>(self) -> Vec3<L> {
-        Vec3::from_fn(|i| self.world.spheres.get(self.primitive(i)).map_or(Vec3::default(), |s| s.center))
-    }
-
-    #[inline(always)]
-    fn row(self, lane: usize) -> usize {
-        (self.start + lane).min(self.hits.len() - 1)
-    }
-
-    #[inline(always)]
-    fn primitive(self, lane: usize) -> usize {
-        self.hits.primitive[self.row(lane)] as usize
-    }
-
-    #[inline(always)]
-    fn material_of(self, lane: usize) -> &'a Material {
-        &self.world.materials[self.world.material_of[self.primitive(lane)] as usize]
+    pub fn center(&self) -> Vec3<L> {
+        Vec3::from_fn(|lane| {
+            let row = (self.start + lane).min(self.hits.len() - 1);
+            self.world.spheres.get(self.hits.primitive(row) as usize).map_or(Vec3::default(), |s| s.center)
+        })
     }
 }

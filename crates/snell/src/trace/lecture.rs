@@ -13,7 +13,7 @@
 //! compound, and bounce n weighs `kr^(n(n+1)/2)` instead of `kr^n`. In the course's models `f` stays 1.
 
 use super::hits::{Batch, Coefficients};
-use super::queue::Weight;
+use super::queue::{Rays, Weight};
 use crate::film::Rgb;
 use crate::geometry::Vec3;
 use crate::lanes::{Lanes, Mask};
@@ -24,46 +24,42 @@ use crate::scene::Integrator;
 /// belongs to the models of this file only.
 pub(crate) const T_MIN: f64 = 1e-5;
 
-/// Rays that leave a batch of hits.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Child<L: Lanes> {
-    /// Which hits send one.
-    pub exists: L::Mask,
-    pub origin: Vec3<L>,
-    pub dir: Vec3<L>,
-    pub weight: Weight<L>,
-}
-
 /// What does this surface add here?
 #[inline(always)]
-pub(crate) fn contribution<L: Lanes>(hits: Batch<'_>) -> Rgb<L> {
+pub(crate) fn contribution<L: Lanes>(hits: &Batch<'_, L>) -> Rgb<L> {
     local(hits.world.render.integrator, &hits.weight(), &hits.coefficients()) * hits.local_color()
 }
 
 /// Which mirror rays leave from here, with what weight? One that carries nothing is not sent.
 #[inline(always)]
-pub(crate) fn mirror_ray<L: Lanes>(hits: Batch<'_>) -> Child<L> {
+pub(crate) fn mirror_ray<L: Lanes>(hits: &Batch<'_, L>) -> (L::Mask, Rays<L>) {
     let weight = mirror(hits.world.render.integrator, &hits.weight(), &hits.coefficients());
     // Kept of unit length: the errors of a thousand bounces would add up, and boxes have margins for one rounding.
     let dir = snell::reflect(hits.wo(), hits.normal()).unit();
-    Child { exists: hits.active::<L>() & weight.carries(), origin: hits.point(), dir, weight }
+    (hits.active & weight.throughput().not_black(), child(hits, hits.point(), dir, weight))
 }
 
 /// Which rays leave on the far side of a glass sphere, with what weight?
 #[inline(always)]
-pub(crate) fn exit_ray<L: Lanes>(hits: Batch<'_>) -> Child<L> {
-    let coefficients = hits.coefficients::<L>();
+pub(crate) fn exit_ray<L: Lanes>(hits: &Batch<'_, L>) -> (L::Mask, Rays<L>) {
+    let coefficients = hits.coefficients();
     let weight = refracted(hits.world.render.integrator, &hits.weight(), &coefficients);
-    let goes_in = hits.active::<L>() & hits.is_sphere::<L>() & refracts(&coefficients) & weight.carries();
+    let goes_in = hits.active & hits.is_sphere() & refracts(&coefficients) & weight.throughput().not_black();
     if !goes_in.any() {
-        return Child { exists: goes_in, origin: hits.point(), dir: hits.wo(), weight };
+        return (goes_in, child(hits, hits.point(), hits.wo(), weight));
     }
     let (eta_outside, eta_inside) = (L::splat(hits.world.eta_outside), hits.material(|m| m.eta));
     let (origin, dir, leaves) =
         snell::through_sphere(hits.point(), hits.normal(), hits.wo(), hits.center(), eta_outside, eta_inside);
     // Where the indices are equal the direction must stay what it is, to the bit.
     let dir = Vec3::select(eta_inside.eq(eta_outside), dir, dir.unit());
-    Child { exists: goes_in & leaves, origin, dir, weight }
+    (goes_in & leaves, child(hits, origin, dir, weight))
+}
+
+#[inline(always)]
+fn child<L: Lanes>(hits: &Batch<'_, L>, origin: Vec3<L>, dir: Vec3<L>, weight: Weight<L>) -> Rays<L> {
+    let (pixel, source, parent) = (hits.pixel(), hits.primitive(), hits.ray());
+    Rays { origin, dir, t_min: L::splat(T_MIN), weight, pixel, source, parent }
 }
 
 /// What the local colour is multiplied by.

@@ -1,9 +1,9 @@
 //! The rays of a generation, as columns.
 
 use crate::film::Rgb;
-use crate::geometry::{Ray, Vec3};
-use crate::lanes::{Lanes, Mask};
-use crate::world::NO_PRIMITIVE;
+use crate::geometry::Vec3;
+use crate::geometry::bvh::{PACKET, Packet};
+use crate::lanes::{Columns, Lanes};
 
 /// Where a ray comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,161 +16,148 @@ pub enum RayKind {
     Refracted,
 }
 
-/// Three columns of numbers: a vector or a colour per row.
-#[derive(Debug, Default)]
-pub(crate) struct Columns {
-    pub x: Vec<f64>,
-    pub y: Vec<f64>,
-    pub z: Vec<f64>,
-}
-
-impl Columns {
-    pub fn clear(&mut self) {
-        self.x.clear();
-        self.y.clear();
-        self.z.clear();
-    }
-
-    #[inline(always)]
-    pub fn push(&mut self, [x, y, z]: [f64; 3]) {
-        self.x.push(x);
-        self.y.push(y);
-        self.z.push(z);
-    }
-
-    #[inline(always)]
-    pub fn vector<L: Lanes>(&self, start: usize) -> Vec3<L> {
-        Vec3::new(L::load(&self.x[start..]), L::load(&self.y[start..]), L::load(&self.z[start..]))
-    }
-
-    #[inline(always)]
-    pub fn color<L: Lanes>(&self, start: usize) -> Rgb<L> {
-        Rgb::new(L::load(&self.x[start..]), L::load(&self.y[start..]), L::load(&self.z[start..]))
-    }
-
-    #[inline(always)]
-    pub fn row(&self, row: usize) -> [f64; 3] {
-        [self.x[row], self.y[row], self.z[row]]
-    }
-
-    /// Appends the lanes that the mask names.
-    #[inline(always)]
-    pub fn compress<L: Lanes>(&mut self, mask: L::Mask, v: [L; 3]) {
-        v[0].compress(mask, &mut self.x);
-        v[1].compress(mask, &mut self.y);
-        v[2].compress(mask, &mut self.z);
-    }
-
-    /// Replaces the rows of the lanes that the mask names.
-    #[inline(always)]
-    pub fn overwrite<L: Lanes>(&mut self, start: usize, mask: L::Mask, v: [L; 3]) {
-        for lane in (0..L::WIDTH).filter(|&i| mask.test(i)) {
-            let row = start + lane;
-            (self.x[row], self.y[row], self.z[row]) = (v[0].lane(lane), v[1].lane(lane), v[2].lane(lane));
-        }
-    }
-
-    fn copy_row(&mut self, from: &Self, row: usize) {
-        self.push(from.row(row));
-    }
-}
-
 /// What a ray carries: `a` and `f`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Weight<L: Lanes> {
+    /// What the surfaces passed so far leave of the light: the lecture's `a`.
     pub attenuation: Rgb<L>,
+    /// The product of the parents' factors, which the lecture applies besides `a`.
     pub factor: Rgb<L>,
 }
 
 impl<L: Lanes> Weight<L> {
-    /// Is there anything left of it?
+    /// What can be added to the pixel for each unit of radiance: `factor·attenuation`.
     #[inline(always)]
-    pub fn carries(&self) -> L::Mask {
-        (self.factor * self.attenuation).not_black()
+    pub fn throughput(&self) -> Rgb<L> {
+        self.factor * self.attenuation
     }
 }
 
-/// Rays that are traced together, in a fixed order.
+/// Rays in lanes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Rays<L: Lanes> {
+    pub origin: Vec3<L>,
+    pub dir: Vec3<L>,
+    pub t_min: L,
+    pub weight: Weight<L>,
+    /// Number of the pixel within the tile.
+    pub pixel: L,
+    /// The primitive that the ray leaves, −1 for none.
+    pub source: L,
+    /// Row of the parent ray in the generation before.
+    pub parent: L,
+}
+
+/// Columns of the queue: origin, direction and `t_min`; attenuation and factor; pixel, source and parent.
+const ORIGIN: usize = 0;
+const ATTENUATION: usize = 7;
+const PIXEL: usize = 13;
+const SOURCE: usize = 14;
+const PARENT: usize = 15;
+
+/// Rays that are traced together, in a fixed order: camera rays, or mirror rays and then refracted ones.
+///
+/// Whole numbers travel as `f64`, in which every `u32` is exact, so that all columns are of one kind.
 #[derive(Debug, Default)]
 pub(crate) struct RayQueue {
-    pub origin: Columns,
-    pub dir: Columns,
-    pub t_min: Vec<f64>,
-    /// What the surfaces passed so far leave of the light: the lecture's `a`.
-    pub attenuation: Columns,
-    /// The product of the parents' factors, which the lecture applies besides `a`.
-    pub factor: Columns,
-    /// Number of the pixel within the tile.
-    pub pixel: Vec<u32>,
-    /// The primitive that the ray leaves.
-    pub source: Vec<u32>,
-    pub kind: Vec<RayKind>,
-    /// Row of the parent ray in the generation before.
-    pub parent: Vec<u32>,
+    rays: Columns<16>,
+    /// How many camera rays, and mirror rays, stand in front.
+    camera: usize,
+    mirror: usize,
 }
 
 impl RayQueue {
-    pub fn len(&self) -> usize {
-        self.pixel.len()
-    }
-
-    pub fn clear(&mut self) {
-        let Self { origin, dir, t_min, attenuation, factor, pixel, source, kind, parent } = self;
-        for columns in [origin, dir, attenuation, factor] {
-            columns.clear();
-        }
-        t_min.clear();
-        for column in [pixel, source, parent] {
-            column.clear();
-        }
-        kind.clear();
-    }
-
-    pub fn push_camera_ray(&mut self, pixel: u32, origin: Vec3, dir: Vec3, t_min: f64) {
-        self.origin.push(origin.into());
-        self.dir.push(dir.into());
-        self.t_min.push(t_min);
-        self.attenuation.push([1.0; 3]);
-        self.factor.push([1.0; 3]);
-        self.pixel.push(pixel);
-        self.source.push(NO_PRIMITIVE);
-        self.kind.push(RayKind::Camera);
-        self.parent.push(0);
-    }
-
-    pub fn copy_row(&mut self, from: &Self, row: usize) {
-        self.origin.copy_row(&from.origin, row);
-        self.dir.copy_row(&from.dir, row);
-        self.t_min.push(from.t_min[row]);
-        self.attenuation.copy_row(&from.attenuation, row);
-        self.factor.copy_row(&from.factor, row);
-        self.pixel.push(from.pixel[row]);
-        self.source.push(from.source[row]);
-        self.kind.push(from.kind[row]);
-        self.parent.push(from.parent[row]);
-    }
-
-    /// What this ray can add to its pixel for each unit of radiance: `factor·attenuation`.
-    pub fn throughput(&self, row: usize) -> Rgb {
-        Rgb::from(self.factor.row(row)) * Rgb::from(self.attenuation.row(row))
-    }
-
-    /// `WIDTH` rays from a row on, the last one repeated at the end, and which of them are real.
     #[inline(always)]
-    pub fn rays<L: Lanes>(&self, start: usize) -> (Ray<L>, L, L::Mask) {
-        let ray = Ray {
-            origin: self.origin.vector(start),
-            dir: self.dir.vector(start),
-            t_min: L::load(&self.t_min[start..]),
-            t_max: L::splat(f64::INFINITY),
-        };
-        (ray, ids(&self.source, start), L::Mask::first(self.len() - start))
+    pub fn len(&self) -> usize {
+        self.rays.len()
     }
-}
 
-/// A column of ids as lanes.
-#[inline(always)]
-pub(crate) fn ids<L: Lanes>(column: &[u32], start: usize) -> L {
-    let last = column.len() - 1;
-    L::from_fn(|i| f64::from(column[(start + i).min(last)]))
+    #[inline(always)]
+    pub fn clear(&mut self) {
+        self.rays.clear();
+        (self.camera, self.mirror) = (0, 0);
+    }
+
+    /// Appends the rays that the mask names. Kinds must come in the order of [`RayKind`].
+    #[inline(always)]
+    pub fn push<L: Lanes>(&mut self, kind: RayKind, mask: L::Mask, rays: &Rays<L>) {
+        let Rays { origin: o, dir: d, t_min, weight: Weight { attenuation: a, factor: f }, pixel, source, parent } =
+            *rays;
+        let before = self.len();
+        let row = [o.x, o.y, o.z, d.x, d.y, d.z, t_min, a.r, a.g, a.b, f.r, f.g, f.b, pixel, source, parent];
+        self.rays.push(mask, row);
+        self.count(kind, self.len() - before);
+    }
+
+    fn count(&mut self, kind: RayKind, rays: usize) {
+        match kind {
+            RayKind::Camera => self.camera += rays,
+            RayKind::Mirror => self.mirror += rays,
+            RayKind::Refracted => {}
+        }
+    }
+
+    /// Appends all rays of another queue, which must not be of an earlier kind.
+    pub fn append(&mut self, other: &Self) {
+        self.rays.append(&other.rays, 0..other.len());
+        (self.camera, self.mirror) = (self.camera + other.camera, self.mirror + other.mirror);
+    }
+
+    /// Appends one ray of another queue.
+    pub fn copy_row(&mut self, from: &Self, row: usize) {
+        self.rays.append(&from.rays, row..row + 1);
+        self.count(from.kind(row), 1);
+    }
+
+    /// Rays from a row on, one in each lane; behind the last one they are of no meaning.
+    #[inline(always)]
+    pub fn rays<L: Lanes>(&self, start: usize) -> Rays<L> {
+        let [x, y, z, dx, dy, dz, t_min] = self.rays.group(ORIGIN, start);
+        let [r, g, b, fr, fg, fb] = self.rays.group(ATTENUATION, start);
+        let [pixel, source, parent] = self.rays.group(PIXEL, start);
+        let weight = Weight { attenuation: Rgb::new(r, g, b), factor: Rgb::new(fr, fg, fb) };
+        Rays { origin: Vec3::new(x, y, z), dir: Vec3::new(dx, dy, dz), t_min, weight, pixel, source, parent }
+    }
+
+    /// Puts up to 64 rays from a row on into a packet, and says which places they take.
+    #[inline(always)]
+    pub fn fill<L: Lanes>(&self, packet: &mut Packet, first: usize) -> u64 {
+        let count = (self.len() - first).min(PACKET);
+        for start in (0..count).step_by(L::WIDTH) {
+            let [x, y, z, dx, dy, dz, t_min] = self.rays.group(ORIGIN, first + start);
+            let source = self.rays.lanes(SOURCE, first + start);
+            let t_max = L::splat(f64::INFINITY);
+            packet.set(start, Vec3::new(x, y, z), Vec3::new(dx, dy, dz), t_min, t_max, source);
+        }
+        u64::MAX >> (PACKET - count)
+    }
+
+    pub fn kind(&self, row: usize) -> RayKind {
+        if row < self.camera {
+            RayKind::Camera
+        } else if row < self.camera + self.mirror {
+            RayKind::Mirror
+        } else {
+            RayKind::Refracted
+        }
+    }
+
+    /// How many camera, mirror and refracted rays.
+    pub fn counts(&self) -> [usize; 3] {
+        [self.camera, self.mirror, self.len() - self.camera - self.mirror]
+    }
+
+    /// The pixels of the rays.
+    #[inline(always)]
+    pub fn pixels(&self) -> impl Iterator<Item = usize> + '_ {
+        self.rays.column(PIXEL)[..self.len()].iter().map(|&pixel| pixel as usize)
+    }
+
+    pub fn pixel(&self, row: usize) -> usize {
+        self.rays.at(PIXEL, row) as usize
+    }
+
+    pub fn parent(&self, row: usize) -> usize {
+        self.rays.at(PARENT, row) as usize
+    }
 }

@@ -1,117 +1,109 @@
 //! The local colour of the hits: ambient light, then light by light, with shadows.
 
-use super::hits::{Batch, Hits};
+use super::hits::Hits;
 use super::lecture::T_MIN;
-use super::queue::{Columns, RayQueue, ids};
-use crate::geometry::Ray;
-use crate::lanes::{Lanes, Mask};
+use crate::film::Rgb;
+use crate::geometry::Vec3;
+use crate::geometry::bvh::{PACKET, Packet};
+use crate::lanes::{Columns, Lanes, Mask};
 use crate::optics::phong::{self, Surface};
 use crate::scene::Shadows;
 use crate::world::{LightSource, World};
 
+/// Columns of the rays towards a light.
+const HIT: usize = 0;
+const ORIGIN: usize = 1;
+const SOURCE: usize = 8;
+
 /// Rays towards one light; the memory is used again for the next one.
 #[derive(Debug, Default)]
 pub(crate) struct ShadowRays {
-    /// For every hit the direction towards the light, and whether the light reaches it.
-    wi: Columns,
-    lit: Vec<bool>,
-    /// The compacted queue: row of the hit, ray, primitive that it leaves.
-    hit: Vec<u32>,
-    origin: Columns,
-    dir: Columns,
-    t_max: Vec<f64>,
-    source: Vec<u32>,
+    /// For every hit the direction towards the light.
+    wi: Columns<3>,
+    /// Whether the light reaches it, a bit per hit.
+    lit: Vec<u64>,
+    /// Row of the hit, origin, direction, distance of the light, primitive that the ray leaves.
+    rays: Columns<9>,
 }
 
 impl ShadowRays {
-    fn clear(&mut self) {
-        let Self { wi, lit, hit, origin, dir, t_max, source } = self;
-        for columns in [wi, origin, dir] {
-            columns.clear();
-        }
-        lit.clear();
-        for column in [hit, source] {
-            column.clear();
-        }
-        t_max.clear();
-    }
-
     /// Decides which hits a light reaches: those that face it, and, with shadows, see it.
-    fn aim<L: Lanes>(&mut self, world: &World, hits: &Hits, light: &LightSource) {
-        self.clear();
+    #[inline(always)]
+    fn aim<L: Lanes>(&mut self, world: &World, hits: &Hits, light: &LightSource, packet: &mut Packet) {
+        self.wi.clear();
+        self.rays.clear();
+        self.lit.clear();
+        self.lit.resize(hits.len().div_ceil(64), 0);
         let with_shadows = world.render.shadows == Shadows::Opaque;
         for start in (0..hits.len()).step_by(L::WIDTH) {
-            let active = L::Mask::first(hits.len() - start);
-            let (point, n) = (hits.point.vector::<L>(start), hits.normal.vector::<L>(start));
+            let batch = hits.batch::<L>(world, start);
+            let point = batch.point();
             let (wi, distance) = if light.at_infinity {
                 (light.at.splat(), L::splat(f64::INFINITY))
             } else {
                 let to_light = light.at.splat() - point;
                 (to_light.unit(), to_light.length())
             };
-            let faces = active & n.dot(wi).gt(L::splat(0.0));
-            self.wi.compress(active, wi.into());
-            self.lit.extend((0..L::WIDTH.min(hits.len() - start)).map(|lane| faces.test(lane)));
+            let faces = batch.active & batch.normal().dot(wi).gt(L::splat(0.0));
+            self.wi.push(batch.active, wi.into());
+            self.lit[start / 64] |= u64::from(faces.bits()) << (start % 64);
             if with_shadows && faces.any() {
-                self.origin.compress(faces, point.into());
-                self.dir.compress(faces, wi.into());
-                distance.compress(faces, &mut self.t_max);
-                for lane in (0..L::WIDTH).filter(|&i| faces.test(i)) {
-                    self.hit.push((start + lane) as u32);
-                    self.source.push(hits.primitive[start + lane]);
-                }
+                let row = L::from_fn(|lane| (start + lane) as f64);
+                let (p, source) = (point, batch.primitive());
+                self.rays.push(faces, [row, p.x, p.y, p.z, wi.x, wi.y, wi.z, distance, source]);
             }
         }
-        for start in (0..self.hit.len()).step_by(L::WIDTH) {
-            let ray = Ray {
-                origin: self.origin.vector(start),
-                dir: self.dir.vector(start),
-                t_min: L::splat(T_MIN),
-                t_max: L::load(&self.t_max[start..]),
-            };
-            let active = L::Mask::first(self.hit.len() - start);
-            let blocked = world.occluded(&ray, ids::<L>(&self.source, start), active);
-            for lane in (0..L::WIDTH).filter(|&i| blocked.test(i)) {
-                self.lit[self.hit[start + lane] as usize] = false;
+        for first in (0..self.rays.len()).step_by(PACKET) {
+            let count = (self.rays.len() - first).min(PACKET);
+            for start in (0..count).step_by(L::WIDTH) {
+                let [x, y, z, dx, dy, dz, distance] = self.rays.group::<L, 7>(ORIGIN, first + start);
+                let source = self.rays.lanes(SOURCE, first + start);
+                packet.set(start, Vec3::new(x, y, z), Vec3::new(dx, dy, dz), L::splat(T_MIN), distance, source);
+            }
+            let mut blocked = world.tree.intersect::<L, true>(packet, u64::MAX >> (PACKET - count));
+            while blocked != 0 {
+                let hit = self.rays.at(HIT, first + blocked.trailing_zeros() as usize) as usize;
+                blocked &= blocked - 1;
+                self.lit[hit / 64] &= !(1 << (hit % 64));
             }
         }
     }
 }
 
 /// Sums up the local colour of every hit. Returns how many shadow rays that took.
+#[inline(always)]
 pub(crate) fn local_colors<L: Lanes>(
     world: &World,
-    queue: &RayQueue,
     hits: &mut Hits,
     shadow: &mut ShadowRays,
+    packet: &mut Packet,
 ) -> usize {
     let ambient = world.ambient.splat::<L>();
     for start in (0..hits.len()).step_by(L::WIDTH) {
-        let batch = Batch::new(world, queue, hits, start);
-        let (active, light) = (batch.active::<L>(), ambient * batch.material_color(|m| m.ka));
-        hits.local.compress(active, light.into());
+        let light = ambient * hits.batch::<L>(world, start).material_color(|m| m.ka);
+        hits.set_local_color(start, light);
     }
     let mut rays = 0;
     for light in &world.lights {
-        shadow.aim::<L>(world, hits, light);
-        rays += shadow.hit.len();
+        shadow.aim::<L>(world, hits, light, packet);
+        rays += shadow.rays.len();
         let intensity = light.color.splat::<L>();
         for start in (0..hits.len()).step_by(L::WIDTH) {
-            let count = L::WIDTH.min(hits.len() - start);
-            let lit = L::Mask::from_fn(|i| i < count && shadow.lit[start + i]);
+            let lit = L::Mask::from_bits((shadow.lit[start / 64] >> (start % 64)) as u32);
             if !lit.any() {
                 continue;
             }
-            let batch = Batch::new(world, queue, hits, start);
+            let batch = hits.batch::<L>(world, start);
             let surface = Surface {
                 kd: batch.material_color(|m| m.kd),
                 ks: batch.material_color(|m| m.ks),
                 spow: batch.material(|m| m.spow),
             };
-            let wi = shadow.wi.vector(start);
-            let [diffuse, highlight] = phong::light(lit, batch.normal(), batch.wo(), wi, intensity, &surface);
-            let sum = batch.local_color::<L>() + diffuse + highlight;
-            hits.local.overwrite(start, lit, sum.into());
+            let [x, y, z] = shadow.wi.group(0, start);
+            let before = batch.local_color();
+            let [diffuse, highlight] =
+                phong::light(lit, batch.normal(), batch.wo(), Vec3::new(x, y, z), intensity, &surface);
+            hits.set_local_color(start, Rgb::select(lit, before + diffuse + highlight, before));
         }
     }
     rays

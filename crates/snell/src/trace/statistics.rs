@@ -1,7 +1,5 @@
 //! What a render did: rays by kind and depth, and the light that was cut off.
 
-use super::RayKind;
-
 /// Counts and losses of a render. Independent of threads, tiles and lanes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Statistics {
@@ -32,12 +30,11 @@ impl RayCounts {
         self.camera + self.mirror + self.refracted + self.shadow
     }
 
-    pub(crate) fn add(&mut self, kind: RayKind) {
-        match kind {
-            RayKind::Camera => self.camera += 1,
-            RayKind::Mirror => self.mirror += 1,
-            RayKind::Refracted => self.refracted += 1,
-        }
+    /// Adds camera, mirror and refracted rays.
+    pub(crate) fn add(&mut self, [camera, mirror, refracted]: [usize; 3]) {
+        self.camera += camera as u64;
+        self.mirror += mirror as u64;
+        self.refracted += refracted as u64;
     }
 }
 

