@@ -1,15 +1,9 @@
 //! Elementary functions that give the same bits on every machine.
 //!
-//! All of them rest on the pure-Rust `libm` crate (a port of musl's and `FreeBSD`'s code, errors below 1 ulp); the
+//! They rest on the pure-Rust `libm` crate (a port of musl's and `FreeBSD`'s code, errors below 1 ulp); the
 //! functions of `std` call the platform's library and differ from machine to machine.
 
 use std::f64::consts::PI;
-
-/// `base^exponent`, error below 1 ulp.
-#[inline]
-pub fn pow(base: f64, exponent: f64) -> f64 {
-    libm::pow(base, exponent)
-}
 
 /// Sine and cosine of an angle in degrees; exact at every multiple of 90, where a rotation should be exact.
 pub fn sin_cos_degrees(degrees: f64) -> (f64, f64) {

@@ -20,6 +20,7 @@ mod columns;
 pub mod elementary;
 #[cfg(target_arch = "aarch64")]
 mod neon;
+mod pow;
 mod scalar;
 #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
 mod wasm;
@@ -29,11 +30,17 @@ mod x86;
 
 pub use array::ArrayLanes;
 pub(crate) use columns::Columns;
+pub use pow::pow;
 pub use width::LaneWidth;
 pub(crate) use width::dispatch;
 
 use std::fmt::Debug;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
+
+/// What [`Lanes::split_exponent`] is made of: the patterns of bits of 2^-¼ and 1, and 2^52.
+const LEAST: u64 = 0x3fea_e89f_995a_d3ad;
+const ONE: u64 = 1.0f64.to_bits();
+const TWO_TO_52: f64 = 4_503_599_627_370_496.0;
 
 /// No width is larger.
 pub(crate) const MAX_WIDTH: usize = 8;
@@ -116,6 +123,39 @@ pub trait Lanes:
     /// `yes` where the mask says so, else `no`.
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
 
+    /// `(m, e)` with `self = m·2^e`, `m` from 2^-¼ to below 2^¾, and `e` whole, for positive normal numbers.
+    ///
+    /// For every other pattern of bits too, `m` is in that range and `e` is whole, from -1023 to 3072: what the formula
+    /// below gives, at every width.
+    #[inline(always)]
+    fn split_exponent(self) -> (Self, Self) {
+        // The patterns of doubles have the exponent above 52 bits of the fraction: moved by the pattern of 2^-¼, all
+        // that belongs to one `e` begins with the same 12 bits. Or-ing them to 2^52 makes them a number.
+        let moved = |lane| self.lane(lane).to_bits().wrapping_add(ONE - LEAST);
+        let m = Self::from_fn(|lane| f64::from_bits((moved(lane) & ((1 << 52) - 1)) + LEAST));
+        let e = Self::from_fn(|lane| f64::from_bits((moved(lane) >> 52) | TWO_TO_52.to_bits()));
+        (m, e - Self::splat(TWO_TO_52 + 1023.0))
+    }
+
+    /// The number without the last 27 of its 53 bits (of the pattern, whatever it stands for): what is left times
+    /// another such number is exact, and so is the difference to the number itself.
+    #[inline(always)]
+    fn head(self) -> Self {
+        Self::from_fn(|lane| f64::from_bits(self.lane(lane).to_bits() & (u64::MAX << 27)))
+    }
+
+    /// `self·2^k`, rounded once, for `self` from ½ to 2 and whole `k` from -1100 to 1100; NaN where `self` is NaN.
+    /// Anything may come out for other `k`: it must be selected away.
+    #[inline(always)]
+    fn times_exp2(self, k: Self) -> Self {
+        // k + 2046 in the last bits of a pattern, halved: two exponents, of which each fits. The first product is exact.
+        let biased = k + Self::splat(TWO_TO_52 + 2046.0);
+        let half = |lane| biased.lane(lane).to_bits() >> 1;
+        let first = Self::from_fn(|lane| f64::from_bits(half(lane) << 52));
+        let second = Self::from_fn(|lane| f64::from_bits((biased.lane(lane).to_bits() - half(lane)) << 52));
+        self * first * second
+    }
+
     /// `self > other`.
     #[inline(always)]
     fn gt(self, other: Self) -> Self::Mask {
@@ -189,6 +229,9 @@ mod tests {
                     assert!(same(got, plain), "operation {which} at width {}: {got} for {plain}", L::WIDTH);
                 }
                 assert!(same(stored[i], x));
+                assert!(same(va.head().lane(i), x.head()));
+                let ((m, e), (one_m, one_e)) = (va.split_exponent(), x.split_exponent());
+                assert!(same(m.lane(i), one_m) && same(e.lane(i), one_e));
                 assert_eq!(va.lt(vb).test(i), x < y);
                 assert_eq!(va.le(vb).test(i), x <= y);
                 assert_eq!(va.gt(vb).test(i), x > y);
@@ -222,6 +265,41 @@ mod tests {
             LikePlainNumbers { a, b, bits }.run::<ArrayLanes<2>>();
             LikePlainNumbers { a, b, bits }.run::<ArrayLanes<4>>();
             LikePlainNumbers { a, b, bits }.run::<ArrayLanes<8>>();
+        }
+    }
+
+    struct TimesExp2(f64, i32);
+
+    impl Kernel for TimesExp2 {
+        type Output = ();
+        #[inline(always)]
+        fn run<L: Lanes>(self) {
+            let scaled = L::splat(self.0).times_exp2(L::splat(f64::from(self.1)));
+            assert_eq!(scaled.lane(L::WIDTH - 1), libm::ldexp(self.0, self.1));
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn the_parts_of_a_number_make_it_up(x in any::<f64>()) {
+            let (m, e) = x.split_exponent();
+            prop_assert!((0.840_896_415_253_714_5..1.681_792_830_507_429).contains(&m) && e == e.floor());
+            prop_assert!((-1023.0..=3072.0).contains(&e));
+            if x.is_normal() && x > 0.0 {
+                prop_assert_eq!(libm::ldexp(m, e as i32), x);
+            }
+            // 26 bits are multiples of 2^-25 for a number from 1 to 2, and what is cut off is less than one.
+            let unit = f64::from_bits(x.to_bits() >> 12 | 1f64.to_bits());
+            let steps = unit.head() * 33_554_432.0;
+            prop_assert!(steps == steps.floor() && (0.0..1.0).contains(&(unit * 33_554_432.0 - steps)));
+        }
+
+        #[test]
+        fn a_power_of_two_rounds_once(x in 0.5..=2.0f64, k in -1100..=1100i32) {
+            prop_assert_eq!(x.times_exp2(f64::from(k)), libm::ldexp(x, k));
+            for width in LaneWidth::ALL {
+                dispatch(width, TimesExp2(x, k));
+            }
         }
     }
 

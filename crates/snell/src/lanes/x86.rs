@@ -7,7 +7,7 @@
 #![allow(unsafe_code, reason = "intrinsics; each block says why it is sound")]
 #![allow(clippy::wildcard_imports, reason = "intrinsics come by the dozen, and their names say where from")]
 
-use super::{Kernel, Lanes, Mask};
+use super::{Kernel, LEAST, Lanes, Mask, ONE, TWO_TO_52};
 use std::arch::x86_64::*;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
@@ -132,7 +132,9 @@ macro_rules! lanes {
     (
         $type:ident($mask:ident), $width:literal, $has:expr, $features:literal, splat $splat:ident, load $load:ident,
         load_f32 $load_f32:ident, store $store:ident, sqrt $sqrt:ident, min $min:ident, max $max:ident,
-        neg $neg:ident, compare $compare:ident, select $select:ident, compress $compress:ident
+        neg $neg:ident, compare $compare:ident, select $select:ident, compress $compress:ident,
+        integers $bits:ident $number:ident $splat64:ident $add64:ident $sub64:ident $and64:ident $or64:ident
+        $shift_left:ident $shift_right:ident
     ) => {
         impl Neg for $type {
             type Output = Self;
@@ -217,6 +219,34 @@ macro_rules! lanes {
             fn select(mask: $mask, yes: Self, no: Self) -> Self {
                 // SAFETY: the machine has the instructions, see the top of the file.
                 Self(unsafe { $select(mask.0, yes.0, no.0) })
+            }
+            // As the definitions in the trait, on the patterns of all lanes at once.
+            #[inline(always)]
+            fn split_exponent(self) -> (Self, Self) {
+                // SAFETY: the machine has the instructions, see the top of the file.
+                unsafe {
+                    let moved = $add64($bits(self.0), $splat64((ONE - LEAST) as i64));
+                    let m = $add64($and64(moved, $splat64((1 << 52) - 1)), $splat64(LEAST as i64));
+                    let e = $or64($shift_right::<52>(moved), $splat64(TWO_TO_52.to_bits() as i64));
+                    (Self($number(m)), Self($number(e)) - Self::splat(TWO_TO_52 + 1023.0))
+                }
+            }
+            #[inline(always)]
+            fn head(self) -> Self {
+                // SAFETY: the machine has the instruction, see the top of the file.
+                Self(unsafe { $number($and64($bits(self.0), $splat64(-1 << 27))) })
+            }
+            #[inline(always)]
+            fn times_exp2(self, k: Self) -> Self {
+                let biased = k + Self::splat(TWO_TO_52 + 2046.0);
+                // SAFETY: the machine has the instructions, see the top of the file.
+                unsafe {
+                    let biased = $bits(biased.0);
+                    let half = $shift_right::<1>(biased);
+                    let first = $number($shift_left::<52>(half));
+                    let second = $number($shift_left::<52>($sub64(biased, half)));
+                    self * Self(first) * Self(second)
+                }
             }
             // MINPD and MAXPD are `a < b ? a : b` and `a > b ? a : b`, NaN and zeros included (Intel SDM, vol. 2).
             #[inline(always)]
@@ -375,16 +405,22 @@ const PACKED: [[i32; 8]; 16] = {
 lanes!(
     Sse2(Sse2Mask), 2, true, "sse2", splat _mm_set1_pd, load _mm_loadu_pd, load_f32 load_f32_sse2,
     store _mm_storeu_pd, sqrt _mm_sqrt_pd, min _mm_min_pd, max _mm_max_pd, neg neg_sse2, compare compare_sse2,
-    select select_sse2, compress compress_sse2
+    select select_sse2, compress compress_sse2,
+    integers _mm_castpd_si128 _mm_castsi128_pd _mm_set1_epi64x _mm_add_epi64 _mm_sub_epi64 _mm_and_si128 _mm_or_si128
+    _mm_slli_epi64 _mm_srli_epi64
 );
 lanes!(
     Avx2(Avx2Mask), 4, has_avx2(), "avx2,popcnt,bmi1,bmi2,lzcnt", splat _mm256_set1_pd, load _mm256_loadu_pd,
     load_f32 load_f32_avx2, store _mm256_storeu_pd, sqrt _mm256_sqrt_pd, min _mm256_min_pd, max _mm256_max_pd,
-    neg neg_avx2, compare _mm256_cmp_pd, select select_avx2, compress compress_avx2
+    neg neg_avx2, compare _mm256_cmp_pd, select select_avx2, compress compress_avx2,
+    integers _mm256_castpd_si256 _mm256_castsi256_pd _mm256_set1_epi64x _mm256_add_epi64 _mm256_sub_epi64 _mm256_and_si256 _mm256_or_si256
+    _mm256_slli_epi64 _mm256_srli_epi64
 );
 lanes!(
     Avx512(Avx512Mask), 8, has_avx512(), "avx512f,avx512dq,avx512vl,avx512bw,avx2,popcnt,bmi1,bmi2,lzcnt",
     splat _mm512_set1_pd, load _mm512_loadu_pd, load_f32 load_f32_avx512, store _mm512_storeu_pd,
     sqrt _mm512_sqrt_pd, min _mm512_min_pd, max _mm512_max_pd, neg neg_avx512, compare _mm512_cmp_pd_mask,
-    select select_avx512, compress _mm512_maskz_compress_pd
+    select select_avx512, compress _mm512_maskz_compress_pd,
+    integers _mm512_castpd_si512 _mm512_castsi512_pd _mm512_set1_epi64 _mm512_add_epi64 _mm512_sub_epi64 _mm512_and_si512 _mm512_or_si512
+    _mm512_slli_epi64 _mm512_srli_epi64
 );
