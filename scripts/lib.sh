@@ -50,3 +50,9 @@ need_python() {
         cp tests/requirements.txt "$stamp"
     fi
 }
+
+# Node runs the WASM tests; 18 is the oldest that is still in a distribution and has all they use.
+need_node() {
+    node --eval 'process.exit(parseInt(process.versions.node) < 18 ? 1 : 0)' 2>/dev/null ||
+        missing 'Node 18 or newer' 'sudo apt-get install nodejs'
+}

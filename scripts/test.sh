@@ -11,9 +11,16 @@ stage() {
     times+=("$(printf '%5d s  %s' $((SECONDS - start)) "$name")")
 }
 
-need_tools() { need_rust wasm && need_python; }
+need_tools() { need_rust wasm && need_python && need_node; }
 oracle() { SNELL=$PWD/target/ci/snell .venv/bin/python -m pytest -q tests; }
 documentation() { RUSTDOCFLAGS='-D warnings' cargo doc --locked --quiet --workspace --no-deps --profile ci; }
+same_bits_in_wasm() {
+    cargo build --locked --quiet --package snell-wasm-test --target wasm32-unknown-unknown --profile ci
+    target/ci/snell-test-scenes >target/same-bits-native.txt
+    node tests/wasm/run.mjs target/wasm32-unknown-unknown/ci/snell_wasm_test.wasm >target/same-bits-wasm.txt
+    diff target/same-bits-native.txt target/same-bits-wasm.txt
+    printf '%d films and statistics, the same bits\n' "$(wc -l <target/same-bits-wasm.txt)"
+}
 
 stage 'tools' need_tools
 stage 'format' cargo fmt --all --check
@@ -23,7 +30,7 @@ stage 'Rust tests' cargo test --locked --quiet --workspace --profile ci
 stage 'Python tests: the slow oracle, the schema' oracle
 stage 'documentation' documentation
 stage 'fuzz targets compile' cargo check --locked --quiet --manifest-path fuzz/Cargo.toml --target-dir target/fuzz
-stage 'the library for WASM' cargo check --locked --quiet --package snell --target wasm32-unknown-unknown --profile ci
+stage 'the same bits in WASM' same_bits_in_wasm
 
 printf '\n── all passed\n'
 printf '%s\n' "${times[@]}"

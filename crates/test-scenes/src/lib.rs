@@ -1,0 +1,43 @@
+//! Scenes that are hard on the engine, and the matrix of settings that must not change a bit of their pictures.
+//!
+//! For tests and measurements only, native and in WASM. All scenes are computed: the same bits on every machine.
+
+#![allow(clippy::unwrap_used, clippy::missing_panics_doc, reason = "a test that cannot go on fails")]
+
+mod build;
+mod crowd;
+mod hostile;
+pub mod matrix;
+
+pub use build::{at_size, lecture};
+pub use crowd::{crowd, far_away, hall_of_mirrors};
+pub use hostile::tiny_and_huge;
+
+use snell::scene::{Integrator, Scene};
+use snell_formats::builtin;
+
+/// A scene and what it is called.
+pub type Named = (String, Scene);
+
+/// The scenes of the golden hash: the lecture's, and the crowd in all models of light. Never to be added to.
+pub fn first_light() -> Vec<Named> {
+    let built_in = builtin::SCENES.iter().map(|(name, _)| ((*name).to_owned(), lecture(name, 40)));
+    let crowds = [Integrator::Lecture, Integrator::Course2018, Integrator::Course2020]
+        .map(|i| (format!("crowd with {i:?}"), crowd(i)));
+    built_in.chain(crowds).collect()
+}
+
+/// Thousands of primitives in each, with one kind of trouble.
+pub fn hostile() -> Vec<Named> {
+    hostile::all().into_iter().map(|(name, scene)| (name.to_owned(), scene)).collect()
+}
+
+/// Every scene of the matrix.
+pub fn all() -> Vec<Named> {
+    let mut scenes = first_light();
+    scenes.extend(hostile());
+    // With this seed a tree without margins around its boxes loses hits at the origin already.
+    scenes.extend([0.0, 4096.0, -3e8].map(|offset| (format!("far away by {offset}"), far_away(offset, 0, true))));
+    scenes.push(("hall of mirrors".to_owned(), hall_of_mirrors(5)));
+    scenes
+}
