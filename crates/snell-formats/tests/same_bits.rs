@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use snell::film::{Crop, Film, Rgb};
-use snell::render::{Options, render, trace_pixel};
+use snell::render::{LaneWidth, Options, render, trace_pixel};
 use snell::scene::{Integrator, Scene};
 use snell::world::World;
 use snell_formats::scene_file::{Syntax, parse};
@@ -168,7 +168,7 @@ fn a_generation_that_is_split_changes_nothing() {
     }
     let small = render(&world, &Options { tile_size: 8, ..Options::default() }).unwrap();
     assert!(small.film == whole.film && small.statistics == whole.statistics);
-    for &lanes in matrix::LANES {
+    for lanes in LaneWidth::ALL {
         let split = render(&world, &Options { tile_size: 33, lanes, ..Options::default() }).unwrap();
         assert!(split.film == whole.film && split.statistics == whole.statistics, "{lanes:?}");
     }
