@@ -52,6 +52,7 @@ pub mod film;
 pub mod geometry;
 pub mod lanes;
 pub mod optics;
+pub mod rays;
 pub mod render;
 pub mod scene;
 pub mod trace;
