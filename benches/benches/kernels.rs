@@ -54,7 +54,8 @@ fn kernels<L: Lanes>(c: &mut Criterion) {
 fn bench<L: Lanes, R>(c: &mut Criterion, name: &str, kernel: impl FnMut() -> R + Copy) {
     let mut group = c.benchmark_group(format!("kernels/{name}"));
     group.throughput(Throughput::Elements(L::WIDTH as u64));
-    group.bench_function(BenchmarkId::from_parameter(format!("{} lanes", L::WIDTH)), |b| b.iter(kernel));
+    let width = BenchmarkId::from_parameter(format!("{} wide", L::WIDTH));
+    group.bench_function(width, |b| b.iter(kernel));
 }
 
 fn every_width(c: &mut Criterion) {

@@ -82,7 +82,7 @@ class Row:
             return vars(self) | {"ratios": None, "missing": missing or "not installed"}
         values = [a[value] / b[value] for a, b in zip(above.answers, below.answers)]
         best = min(a[value] for a in above.answers) / min(b[value] for b in below.answers)
-        return vars(self) | {"ratios": values, "best": best}
+        return vars(self) | {"ratios": values, "best": best, "value": value}
 
 
 def agreement(kind: str, snell: Timing, embree: Timing) -> dict:
