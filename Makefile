@@ -1,10 +1,10 @@
 # Everything goes through these. What they need is installed without asking; what cannot be is named.
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test fuzz clean
+.PHONY: help demo test fuzz bench bench-peers clean
 
 help: ## This list
-	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-6s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-11s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
 demo: ## Build Snell, render the default scene, say where the picture is
 	@scripts/demo.sh
@@ -14,6 +14,12 @@ test: ## Everything that CI runs
 
 fuzz: ## Fuzz every reader for a minute each (SECONDS_EACH=600 make fuzz for longer)
 	@scripts/fuzz.sh
+
+bench: ## Time kernels, trees, rays and pictures (BASELINE=name saves, AGAINST=name compares)
+	@scripts/bench.sh
+
+bench-peers: ## Compare with POV-Ray and Embree where they are installed, and measure how cost grows
+	@scripts/bench-peers.sh
 
 clean: ## Remove what was built
 	cargo clean

@@ -9,6 +9,11 @@ missing() {
     exit 2
 }
 
+# Says what is missing, and goes on without it.
+absent() {
+    printf '%s is not installed, so it is left out. To have it:   %s\n' "$1" "$2" >&2
+}
+
 # The Rust toolchain that rust-toolchain.toml names, with its components; the WASM target too if asked for.
 need_rust() {
     local channel
@@ -37,10 +42,14 @@ complete_toolchain() {
     [ "$2" != wasm ] || grep -q '^rust-std-wasm32-unknown-unknown' <<<"$parts"
 }
 
-# A virtual environment of our own with what the Python tests need.
-need_python() {
+need_plain_python() {
     python3 -c 'import sys; sys.exit(sys.version_info < (3, 10))' 2>/dev/null ||
         missing 'Python 3.10 or newer' 'sudo apt-get install python3 python3-venv'
+}
+
+# A virtual environment of our own with what the Python tests need.
+need_python() {
+    need_plain_python
     local stamp=.venv/requirements.txt
     if ! cmp -s tests/requirements.txt "$stamp"; then
         rm -rf .venv

@@ -31,8 +31,7 @@ mod x86;
 pub use array::ArrayLanes;
 pub(crate) use columns::Columns;
 pub use pow::pow;
-pub use width::LaneWidth;
-pub(crate) use width::dispatch;
+pub use width::{LaneWidth, dispatch};
 
 use std::fmt::Debug;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};

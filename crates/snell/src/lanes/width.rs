@@ -78,7 +78,7 @@ type Two = super::x86::Sse2;
 type Two = ArrayLanes<2>;
 
 /// Does some work at a width, with the best instructions that the machine has for it.
-pub(crate) fn dispatch<K: Kernel>(width: LaneWidth, kernel: K) -> K::Output {
+pub fn dispatch<K: Kernel>(width: LaneWidth, kernel: K) -> K::Output {
     match width {
         LaneWidth::One => f64::call(kernel),
         LaneWidth::Two => Two::call(kernel),
