@@ -44,6 +44,15 @@ const TWO_TO_52: f64 = 4_503_599_627_370_496.0;
 /// No width is larger.
 pub(crate) const MAX_WIDTH: usize = 8;
 
+/// Tells the machine that these numbers will soon be read, so that it fetches them while something else is done.
+#[inline(always)]
+pub(crate) fn prefetch<T>(values: &[T]) {
+    #[cfg(target_arch = "x86_64")]
+    x86::prefetch(values);
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = values;
+}
+
 /// One yes or no per lane.
 pub trait Mask: Copy + Debug + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {
     /// Lane i is bit i; bits beyond the width are ignored.

@@ -8,7 +8,7 @@ use surface::FLAT;
 pub use surface::NO_PRIMITIVE;
 
 use crate::film::Rgb;
-use crate::geometry::bvh::{Bvh, Shapes};
+use crate::geometry::bvh::{Bvh, Quality, Shapes};
 use crate::geometry::mesh::MAX_SMOOTHED_VALENCE;
 use crate::geometry::{Affine, Bounds, Sphere, TriangleMesh, Vec3, triangle};
 use crate::scene::{
@@ -243,7 +243,7 @@ impl World {
         // Rays start on surfaces or on the image plane; no ray origin is farther from a primitive than this.
         let corners = Bounds::of(self.camera.corners());
         let everything = (0..shapes.count()).map(|i| shapes.bounds(i)).fold(corners, Bounds::union);
-        self.tree = Bvh::build(&shapes, everything.diagonal());
+        self.tree = Bvh::build(&shapes, everything.diagonal(), Quality::default(), 0);
     }
 }
 

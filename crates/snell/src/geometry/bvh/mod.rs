@@ -11,13 +11,15 @@ mod packet;
 mod primitives;
 mod single;
 
+pub use build::Quality;
 pub(crate) use packet::{Packet, SIZE as PACKET};
 pub use primitives::Shapes;
 
 use super::Vec3;
 use super::bounds::OuterBox;
-use node::{Child, Node};
-use primitives::Primitives;
+use crate::lanes::prefetch;
+use node::{Block, Child, Kind, Node};
+use primitives::{Primitives, SPHERE, TRIANGLE};
 
 /// Relative size of the margin around each primitive: 2⁻⁴⁸ of the farthest distance from which a ray can come.
 ///
@@ -46,14 +48,28 @@ struct Waiting {
 
 impl Bvh {
     /// Builds the tree. `reach` is the largest distance between a ray's origin and a primitive.
-    pub fn build(shapes: &Shapes<'_>, reach: f64) -> Self {
+    /// `threads`: 0 for as many as the machine has cores.
+    pub fn build(shapes: &Shapes<'_>, reach: f64, quality: Quality, threads: usize) -> Self {
         let padded = |i| OuterBox::around(&shapes.bounds(i), reach * MARGIN);
-        let tree = build::build((0..shapes.count()).map(padded).collect());
-        Self { nodes: tree.nodes, primitives: Primitives::new(shapes, &tree.leaves, tree.order) }
+        let mut tree = build::build(shapes.count(), padded, quality, threads);
+        let primitives = Primitives::new(shapes, &mut tree);
+        Self { nodes: tree.nodes, primitives }
+    }
+
+    /// Fetches what is in a box while others are visited first: a tree of any size does not fit into a cache.
+    #[inline(always)]
+    fn prefetch(&self, child: Child) {
+        match child.kind() {
+            Kind::Node(number) => prefetch(std::slice::from_ref(&self.nodes[number as usize])),
+            Kind::Block(Block { at, spheres, triangles }) => {
+                prefetch(&self.primitives.numbers[at..at + SPHERE * spheres + TRIANGLE * triangles]);
+            }
+            Kind::Leaf(_) | Kind::Nothing => {}
+        }
     }
 
     /// The corners of a triangle, by its id.
-    pub fn corners(&self, id: u32) -> [Vec3; 3] {
+    pub fn corners(&self, id: usize) -> [Vec3; 3] {
         self.primitives.corners(id)
     }
 
@@ -66,13 +82,11 @@ impl Bvh {
     #[must_use]
     pub fn flat(mut self) -> Self {
         for node in &mut self.nodes {
-            let (low, high) = ([f32::NEG_INFINITY; node::WIDTH], [f32::INFINITY; node::WIDTH]);
-            let used = |slot: usize| node.child[slot] != Child::NOTHING;
-            let wide = |planes: [f32; node::WIDTH], empty: f32| {
-                std::array::from_fn(|slot| if used(slot) { planes[slot] } else { empty })
-            };
-            let (low, high) = (wide(low, f32::INFINITY), wide(high, f32::NEG_INFINITY));
-            node.planes = [low, high, low, high, low, high];
+            for slot in (0..node::WIDTH).filter(|&slot| node.child[slot] != Child::NOTHING) {
+                for axis in 0..3 {
+                    (node.min[axis][slot], node.max[axis][slot]) = (f32::NEG_INFINITY, f32::INFINITY);
+                }
+            }
         }
         self
     }
@@ -137,7 +151,7 @@ mod tests {
         let hits = (0..shapes.count()).filter_map(|id| Some((alone(shapes, id, origin, dir)?, id)));
         let nearest = hits.min_by(|a, b| a.partial_cmp(b).unwrap());
         let everything = (0..shapes.count()).map(|i| shapes.bounds(i)).fold(Bounds::of([origin]), Bounds::union);
-        let tree = Bvh::build(shapes, everything.diagonal());
+        let tree = Bvh::build(shapes, everything.diagonal(), Quality::Good, 1);
         let limit = nearest.map_or(f64::INFINITY, |(t, _)| t.next_up());
         for (t_max, copies) in [(f64::INFINITY, 1), (f64::INFINITY, PACKET), (limit, 1), (limit, PACKET)] {
             let found = [

@@ -6,9 +6,8 @@
 //! are left, each goes its own way ([`follow`](Bvh::follow)). After Wald, Benthin and Boulos, *Getting Rid of
 //! Packets*, 2008; Benthin et al., *Combining Single and Packet-Ray Tracing for Arbitrary Ray Distributions*, 2012.
 
-use super::node::{self, Child, Node};
-use super::primitives::Leaf;
-use super::single::SingleRay;
+use super::node::{self, Block, Child, Kind, Node};
+use super::primitives::{SPHERE, TRIANGLE};
 use super::{Bvh, Waiting};
 use crate::geometry::ray::{Shear, axes, inverse};
 use crate::geometry::{Vec3, sphere, triangle};
@@ -27,14 +26,14 @@ type Column = [f64; SIZE];
 #[derive(Debug)]
 #[repr(align(64))]
 pub(crate) struct Packet {
-    origin: [Column; 3],
-    dir: [Column; 3],
-    inv_dir: [Column; 3],
+    pub(super) origin: [Column; 3],
+    pub(super) dir: [Column; 3],
+    pub(super) inv_dir: [Column; 3],
     /// First two numbers of the shears; the third is the inverse of the main component.
-    shear: [Column; 2],
-    t_min: Column,
+    pub(super) shear: [Column; 2],
+    pub(super) t_min: Column,
     /// The primitive that a ray leaves and cannot hit.
-    source: Column,
+    pub(super) source: Column,
     /// Distance of the nearest hit so far; `t_max` without one.
     pub t: Column,
     /// The primitive hit there, −1 without one.
@@ -138,20 +137,10 @@ impl Packet {
         Vec3::new(L::load(&columns[x][start..]), L::load(&columns[y][start..]), L::load(&columns[z][start..]))
     }
 
+    /// A vector of one ray in every lane.
     #[inline(always)]
-    fn single(&self, i: usize, main: usize, side: [usize; 3]) -> SingleRay {
-        SingleRay {
-            origin: [self.origin[0][i], self.origin[1][i], self.origin[2][i]],
-            dir: [self.dir[0][i], self.dir[1][i], self.dir[2][i]],
-            inv_dir: [self.inv_dir[0][i], self.inv_dir[1][i], self.inv_dir[2][i]],
-            shear: [self.shear[0][i], self.shear[1][i]],
-            main,
-            side,
-            t_min: self.t_min[i],
-            source: self.source[i],
-            t: self.t[i],
-            primitive: self.primitive[i],
-        }
+    pub(super) fn one<L: Lanes>(&self, columns: &[Column; 3], ray: usize, [x, y, z]: [usize; 3]) -> Vec3<L> {
+        Vec3::new(L::splat(columns[x][ray]), L::splat(columns[y][ray]), L::splat(columns[z][ray]))
     }
 
     /// The largest distance that still counts for any of these rays.
@@ -164,6 +153,14 @@ impl Packet {
         }
         over_lanes([none, farthest])[1]
     }
+}
+
+/// What rays have in common that go the same way.
+pub(super) struct Octant {
+    /// For each axis 1 where they go towards smaller coordinates.
+    pub side: [usize; 3],
+    /// The order of the axes for their shear, the main one last.
+    pub axes: [usize; 3],
 }
 
 /// Bounds of what some rays have in common: origins and inverse directions between these.
@@ -208,8 +205,8 @@ impl Beam {
                 let (i_low, i_high) = (L::splat(self.inv_dir[axis][0]), L::splat(self.inv_dir[axis][1]));
                 // The origin that is farthest along reaches a plane first.
                 let (first, last) = (L::splat(self.origin[axis][1 - side]), L::splat(self.origin[axis][side]));
-                let to_near = node.plane::<L>(axis, side, start) - first;
-                let to_far = node.plane::<L>(axis, 1 - side, start) - last;
+                let to_near = L::load_f32(&node.side(axis, side)[start..]) - first;
+                let to_far = L::load_f32(&node.side(axis, 1 - side)[start..]) - last;
                 enter = (to_near * i_low).min(to_near * i_high).max(enter);
                 leave = (to_far * i_low).max(to_far * i_high).min(leave);
             }
@@ -243,72 +240,48 @@ impl Bvh {
             // A direction without any sense has no main axis.
             alike |= 1 << first;
             rays &= !alike;
-            hit |= self.descend::<L, ANY>(packet, alike, side, main);
+            hit |= self.descend::<L, ANY>(packet, alike, &Octant { side, axes: axes(main) });
         }
         hit
     }
 
     /// Takes rays that go the same way down the tree together.
     #[inline(always)]
-    fn descend<L: Lanes, const ANY: bool>(&self, packet: &mut Packet, all: u64, side: [usize; 3], main: usize) -> u64 {
-        let beam = Beam::new::<L>(packet, all, side);
+    fn descend<L: Lanes, const ANY: bool>(&self, packet: &mut Packet, all: u64, octant: &Octant) -> u64 {
+        let beam = Beam::new::<L>(packet, all, octant.side);
         let mut farthest = packet.farthest::<L>(all);
         let mut near = [0.0; node::WIDTH];
         let (mut hit, mut rays, mut child) = (0, all, Child::ROOT);
         packet.waiting.clear();
         loop {
-            let number = child.number();
-            let alone = match number {
-                Ok(leaf) => alone::<L>(self.primitives.leaves[leaf], rays),
-                Err(_) => rays.count_ones() <= FEW,
-            };
-            let before = hit;
-            if alone {
-                let mut each = rays;
-                while each != 0 {
-                    let i = each.trailing_zeros() as usize & (SIZE - 1);
-                    each &= each - 1;
-                    let mut ray = packet.single(i, main, side);
-                    let mut waiting = std::mem::take(&mut packet.waiting_single);
-                    let blocked = self.follow::<L, ANY>(&mut ray, child, &mut waiting);
-                    packet.waiting_single = waiting;
-                    if ANY {
-                        hit |= u64::from(blocked) << i;
-                    } else {
-                        hit |= u64::from(ray.t < packet.t[i] || ray.primitive >= 0.0) << i;
-                        (packet.t[i], packet.primitive[i]) = (ray.t, ray.primitive);
-                    }
+            let mut found = 0;
+            match child.kind() {
+                Kind::Nothing | Kind::Leaf(_) => {}
+                Kind::Block(block) if alone::<L>(block, rays) => {
+                    found = self.test_each::<L, ANY>(packet, rays, octant, block);
                 }
-                if !ANY {
-                    farthest = packet.farthest::<L>(all);
+                Kind::Block(block) => found = self.test_together::<L, ANY>(packet, rays, octant, block),
+                Kind::Node(_) if rays.count_ones() <= FEW => {
+                    found = self.follow_each::<L, ANY>(packet, rays, octant, child);
                 }
-            } else {
-                match number {
-                    Ok(leaf) => {
-                        hit |= self.test_leaf::<L, ANY>(self.primitives.leaves[leaf], packet, rays, main);
-                        if !ANY {
-                            farthest = packet.farthest::<L>(all);
-                        }
+                Kind::Node(number) => {
+                    let mut met = beam.meet::<L>(&self.nodes[number as usize], farthest, &mut near);
+                    let first = packet.waiting.len();
+                    while met != 0 {
+                        let slot = met.trailing_zeros() & 7;
+                        met &= met - 1;
+                        self.prefetch(self.nodes[number as usize].child[slot as usize]);
+                        packet.waiting.push(BeamWaiting { t: near[slot as usize], rays, node: number, slot });
                     }
-                    Err(number) => {
-                        let mut met = beam.meet::<L>(&self.nodes[number], farthest, &mut near);
-                        let first = packet.waiting.len();
-                        while met != 0 {
-                            let slot = met.trailing_zeros() & 7;
-                            met &= met - 1;
-                            packet.waiting.push(BeamWaiting {
-                                t: near[slot as usize],
-                                rays,
-                                node: number as u32,
-                                slot,
-                            });
-                        }
-                        farthest_first(&mut packet.waiting[first..]);
-                    }
+                    farthest_first(&mut packet.waiting[first..]);
                 }
             }
-            if ANY && hit != before && hit == all {
+            hit |= found;
+            if ANY && hit == all {
                 return hit;
+            }
+            if !ANY && found != 0 {
+                farthest = packet.farthest::<L>(all);
             }
             (rays, child) = loop {
                 let Some(next) = packet.waiting.pop() else { return hit };
@@ -317,7 +290,7 @@ impl Bvh {
                 }
                 let open = if ANY { next.rays & !hit } else { next.rays };
                 let node = &self.nodes[next.node as usize];
-                let met = enter::<L>(packet, node, next.slot as usize & 7, open, side);
+                let met = enter::<L>(packet, node, next.slot as usize & 7, open, octant.side);
                 if met != 0 {
                     break (met, node.child[next.slot as usize & 7]);
                 }
@@ -325,14 +298,57 @@ impl Bvh {
         }
     }
 
+    /// Follows one ray after the other from a node on.
+    #[inline(always)]
+    fn follow_each<L: Lanes, const ANY: bool>(
+        &self,
+        packet: &mut Packet,
+        mut rays: u64,
+        octant: &Octant,
+        from: Child,
+    ) -> u64 {
+        let mut hit = 0;
+        let mut waiting = std::mem::take(&mut packet.waiting_single);
+        while rays != 0 {
+            let ray = rays.trailing_zeros() as usize & (SIZE - 1);
+            rays &= rays - 1;
+            hit |= u64::from(self.follow::<L, ANY>(packet, ray, octant, from, &mut waiting)) << ray;
+        }
+        packet.waiting_single = waiting;
+        hit
+    }
+
+    /// Tests the primitives of a leaf, in lanes, against one ray after the other.
+    #[inline(always)]
+    fn test_each<L: Lanes, const ANY: bool>(
+        &self,
+        packet: &mut Packet,
+        mut rays: u64,
+        octant: &Octant,
+        block: Block,
+    ) -> u64 {
+        let mut hit = 0;
+        while rays != 0 {
+            let ray = rays.trailing_zeros() as usize & (SIZE - 1);
+            rays &= rays - 1;
+            hit |= u64::from(self.test_alone::<L, ANY>(packet, ray, octant, block)) << ray;
+        }
+        hit
+    }
+
     /// Tests the primitives of a leaf one after the other against the rays in lanes.
     #[inline(always)]
-    fn test_leaf<L: Lanes, const ANY: bool>(&self, leaf: Leaf, packet: &mut Packet, rays: u64, main: usize) -> u64 {
-        let (spheres, triangles) = (usize::from(leaf.spheres), usize::from(leaf.triangles));
-        let numbers = &self.primitives.numbers[leaf.at as usize..];
-        let ids = &self.primitives.ids[leaf.first as usize..][..spheres + triangles];
+    fn test_together<L: Lanes, const ANY: bool>(
+        &self,
+        packet: &mut Packet,
+        rays: u64,
+        octant: &Octant,
+        block: Block,
+    ) -> u64 {
+        let Block { at, spheres, triangles } = block;
+        let numbers = &self.primitives.numbers[at..];
+        let k = octant.axes;
         let mut hit = 0;
-        let k = axes(main);
         for (start, active) in groups::<L>(rays) {
             let mut nearest = Nearest::<L>::load(packet, start, active);
             if spheres > 0 {
@@ -342,20 +358,20 @@ impl Bvh {
                     let center = vector(numbers, spheres, i, [0, 1, 2]);
                     let radius = L::splat(numbers[3 * spheres + i]);
                     let (t, meets) = sphere::intersect(origin, dir, center, radius);
-                    nearest.keep(t, meets, ids[i]);
+                    nearest.keep(t, meets, numbers[4 * spheres + i]);
                 }
             }
             if triangles > 0 {
                 let origin = Packet::vector(&packet.origin, start, k);
                 let (x, y) = (L::load(&packet.shear[0][start..]), L::load(&packet.shear[1][start..]));
                 let shear = Shear(Vec3::new(x, y, L::load(&packet.inv_dir[k[2]][start..])));
-                let numbers = &numbers[4 * spheres..];
+                let numbers = &numbers[SPHERE * spheres..];
                 for i in 0..triangles {
                     let a = vector(numbers, triangles, i, k);
                     let b = vector(numbers, triangles, i, [k[0] + 3, k[1] + 3, k[2] + 3]);
                     let c = vector(numbers, triangles, i, [k[0] + 6, k[1] + 6, k[2] + 6]);
                     let found = triangle::intersect(origin, &shear, [a, b, c]);
-                    nearest.keep(found.t, found.meets, ids[spheres + i]);
+                    nearest.keep(found.t, found.meets, numbers[(TRIANGLE - 1) * triangles + i]);
                 }
             }
             hit |= u64::from(nearest.hit.bits()) << start;
@@ -368,11 +384,9 @@ impl Bvh {
 
 /// Is it cheaper to test the primitives of a leaf against one ray after the other than against the rays in lanes?
 #[inline(always)]
-fn alone<L: Lanes>(leaf: Leaf, rays: u64) -> bool {
-    let (spheres, triangles) = (u32::from(leaf.spheres), u32::from(leaf.triangles));
-    let width = L::WIDTH as u32;
-    let single = rays.count_ones() * (spheres.div_ceil(width) + triangles.div_ceil(width));
-    single <= groups::<L>(rays).count() as u32 * (spheres + triangles)
+fn alone<L: Lanes>(block: Block, rays: u64) -> bool {
+    let each = rays.count_ones() as usize * (block.spheres.div_ceil(L::WIDTH) + block.triangles.div_ceil(L::WIDTH));
+    each <= groups::<L>(rays).count() * (block.spheres + block.triangles)
 }
 
 /// Three numbers of one primitive, from these columns of a leaf, in every lane.
@@ -407,12 +421,12 @@ impl<L: Lanes> Nearest<L> {
 
     /// Keeps a hit where it is nearer; at equal distance that of the lower id.
     #[inline(always)]
-    fn keep(&mut self, t: L, meets: L::Mask, id: u32) {
+    fn keep(&mut self, t: L, meets: L::Mask, id: f64) {
         let meets = meets & self.active;
         if !meets.any() {
             return;
         }
-        let id = L::splat(f64::from(id));
+        let id = L::splat(id);
         let closer = t.lt(self.t) | (t.eq(self.t) & id.lt(self.primitive));
         let kept = meets & t.gt(self.t_min) & closer & !self.source.eq(id);
         self.hit = self.hit | kept;
@@ -439,8 +453,8 @@ fn enter<L: Lanes>(packet: &Packet, node: &Node, slot: usize, rays: u64, side: [
         let (mut enter, mut leave) = (L::load(&packet.t_min[start..]), L::load(&packet.t[start..]));
         for axis in 0..3 {
             let side = side[axis] & 1;
-            let near = L::splat(f64::from(node.planes[2 * axis + side][slot]));
-            let far = L::splat(f64::from(node.planes[2 * axis + 1 - side][slot]));
+            let near = L::splat(f64::from(node.side(axis, side)[slot]));
+            let far = L::splat(f64::from(node.side(axis, 1 - side)[slot]));
             let (o, i) = (L::load(&packet.origin[axis][start..]), L::load(&packet.inv_dir[axis][start..]));
             enter = ((near - o) * i).max(enter);
             leave = ((far - o) * i).min(leave);

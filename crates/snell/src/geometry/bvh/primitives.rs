@@ -1,6 +1,6 @@
 //! The primitives of the leaves, in columns, so that several of a leaf are read at once.
 
-use super::build::Range;
+use super::node::{Block, Child, Kind, Tree};
 use crate::geometry::{Bounds, Sphere, Vec3};
 use crate::lanes::MAX_WIDTH;
 
@@ -34,86 +34,66 @@ impl Shapes<'_> {
     }
 }
 
-/// A leaf: its spheres, then its triangles.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Leaf {
-    /// Where its primitives start in `ids`.
-    pub first: u32,
-    /// Where its numbers start in `numbers`.
-    pub at: u32,
-    pub spheres: u8,
-    pub triangles: u8,
-}
-
-/// Where the numbers of one primitive are: the first, and how far apart.
-#[derive(Clone, Copy, Debug, Default)]
-struct Place {
-    at: u32,
-    stride: u32,
-}
+/// Columns of spheres: centre, radius, id.
+pub(super) const SPHERE: usize = 5;
+/// Columns of triangles: three corners, id.
+pub(super) const TRIANGLE: usize = 10;
 
 /// All primitives of a tree.
 ///
-/// A leaf of `s` spheres and `t` triangles is `4·s + 9·t` numbers: the columns x, y, z and radius of its spheres, then the
-/// columns `ax ay az bx by bz cx cy cz` of its triangles.
+/// A leaf of `s` spheres and `t` triangles is `5·s + 10·t` numbers: the columns x, y, z, radius and id of its spheres, then
+/// the columns `ax ay az bx by bz cx cy cz` and id of its triangles, ids ascending. Every `u32` is exact as `f64`.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Primitives {
-    pub leaves: Vec<Leaf>,
-    /// Ids of the primitives, leaf by leaf, ascending in each.
-    pub ids: Vec<u32>,
     /// The leaves' columns, and some zeros so that the last one can be read in full lanes.
     pub numbers: Vec<f64>,
-    /// By id.
-    places: Vec<Place>,
+    /// By triangle: the place of its first number, and the distance to the next ones.
+    places: Vec<(u32, u32)>,
+    /// The id of the first triangle.
+    spheres: usize,
 }
 
 impl Primitives {
-    pub fn new(shapes: &Shapes<'_>, ranges: &[Range], ids: Vec<u32>) -> Self {
-        let count = shapes.spheres.len();
-        let mut numbers = Vec::with_capacity(4 * count + 9 * shapes.faces.len() + MAX_WIDTH);
-        let mut places = vec![Place::default(); shapes.count()];
-        let mut leaves = Vec::with_capacity(ranges.len());
-        for range in ranges {
-            let own = &ids[range.first as usize..(range.first + range.count) as usize];
-            let (spheres, triangles) = own.split_at(own.partition_point(|&id| (id as usize) < count));
-            let at = numbers.len();
-            let sphere = |&id: &u32| shapes.spheres[id as usize];
-            numbers.extend(spheres.iter().map(|id| sphere(id).center.x));
-            numbers.extend(spheres.iter().map(|id| sphere(id).center.y));
-            numbers.extend(spheres.iter().map(|id| sphere(id).center.z));
-            numbers.extend(spheres.iter().map(|id| sphere(id).radius));
-            let first = numbers.len();
-            for column in 0..9 {
-                let number = |&id: &u32| shapes.corners(id as usize - count)[column / 3].component(column % 3);
-                numbers.extend(triangles.iter().map(number));
+    /// Copies the primitives, leaf by leaf, and makes the leaves of the tree point to them.
+    pub fn new(shapes: &Shapes<'_>, tree: &mut Tree) -> Self {
+        let first = shapes.spheres.len();
+        let mut numbers = Vec::with_capacity(SPHERE * first + TRIANGLE * shapes.faces.len() + MAX_WIDTH);
+        let mut places = vec![(0, 0); shapes.faces.len()];
+        for child in tree.nodes.iter_mut().flat_map(|node| &mut node.child) {
+            let Kind::Leaf(leaf) = child.kind() else { continue };
+            let leaf = tree.leaves[leaf as usize];
+            let ids = &tree.order[leaf.first as usize..(leaf.first + leaf.count) as usize];
+            let (spheres, triangles) = ids.split_at(ids.partition_point(|&id| (id as usize) < first));
+            *child = Child::block(Block { at: numbers.len(), spheres: spheres.len(), triangles: triangles.len() });
+            for column in 0..SPHERE {
+                numbers.extend(spheres.iter().map(|&id| {
+                    let Sphere { center, radius } = shapes.spheres[id as usize];
+                    [center.x, center.y, center.z, radius, f64::from(id)][column]
+                }));
             }
-            for (start, some) in [(at, spheres), (first, triangles)] {
-                for (i, &id) in some.iter().enumerate() {
-                    places[id as usize] = Place { at: (start + i) as u32, stride: some.len() as u32 };
+            for (i, &id) in triangles.iter().enumerate() {
+                places[id as usize - first] = ((numbers.len() + i) as u32, triangles.len() as u32);
+            }
+            for corner in 0..3 {
+                for axis in 0..3 {
+                    let number = |&id: &u32| shapes.corners(id as usize - first)[corner].component(axis);
+                    numbers.extend(triangles.iter().map(number));
                 }
             }
-            leaves.push(Leaf {
-                first: range.first,
-                at: at as u32,
-                spheres: spheres.len() as u8,
-                triangles: triangles.len() as u8,
-            });
+            numbers.extend(triangles.iter().map(|&id| f64::from(id)));
         }
         numbers.resize(numbers.len() + MAX_WIDTH, 0.0);
-        Self { leaves, ids, numbers, places }
+        Self { numbers, places, spheres: first }
     }
 
     /// The corners of a triangle.
-    pub fn corners(&self, id: u32) -> [Vec3; 3] {
-        let Place { at, stride } = self.places[id as usize];
+    pub fn corners(&self, id: usize) -> [Vec3; 3] {
+        let (at, stride) = self.places[id - self.spheres];
         let number = |column: u32| self.numbers[(at + column * stride) as usize];
         [0, 3, 6].map(|first| Vec3::new(number(first), number(first + 1), number(first + 2)))
     }
 
     pub fn memory(&self) -> usize {
-        size_of_val(self.leaves.as_slice())
-            + size_of_val(self.ids.as_slice())
-            + size_of_val(self.numbers.as_slice())
-            + size_of_val(self.places.as_slice())
+        size_of_val(self.numbers.as_slice()) + size_of_val(self.places.as_slice())
     }
 }

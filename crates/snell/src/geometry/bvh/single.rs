@@ -1,55 +1,41 @@
 //! One ray through the tree: the boxes of a node, or the primitives of a leaf, in lanes.
 
-use super::node::{self, Child, Node};
-use super::primitives::{Leaf, Primitives};
+use super::node::{self, Block, Child, Kind, Node};
+use super::packet::{Octant, Packet};
+use super::primitives::{SPHERE, TRIANGLE};
 use super::{Bvh, Waiting};
-use crate::geometry::ray::{Shear, axes};
+use crate::geometry::ray::Shear;
 use crate::geometry::{Vec3, sphere, triangle};
 use crate::lanes::{Lanes, Mask};
 
-/// One ray, taken from a packet.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct SingleRay {
-    pub origin: [f64; 3],
-    pub dir: [f64; 3],
-    pub inv_dir: [f64; 3],
-    /// First two numbers of its shear; the third is the inverse of its main component.
-    pub shear: [f64; 2],
-    /// Its main axis.
-    pub main: usize,
-    /// For each axis 1 where it goes towards smaller coordinates.
-    pub side: [usize; 3],
-    pub t_min: f64,
-    /// The primitive that it leaves and cannot hit.
-    pub source: f64,
-    /// The nearest hit so far: distance and primitive, less than any id if there is none.
-    pub t: f64,
-    pub primitive: f64,
-}
-
 impl Bvh {
-    /// Follows one ray from a node or leaf on; near boxes first. With `ANY` it stops at the first hit and says so.
+    /// Follows one ray of a packet from a node on; near boxes first. With `ANY` it stops at the first hit. Says whether it
+    /// found one.
     #[inline(always)]
     pub(super) fn follow<L: Lanes, const ANY: bool>(
         &self,
-        ray: &mut SingleRay,
+        packet: &mut Packet,
+        ray: usize,
+        octant: &Octant,
         from: Child,
         waiting: &mut Vec<Waiting>,
     ) -> bool {
-        let boxes = Boxes::<L>::new(ray);
+        let boxes = Boxes::<L>::new(packet, ray, octant);
         let mut near = [0.0; node::WIDTH];
-        let mut child = from;
+        let (mut child, mut found) = (from, false);
         waiting.clear();
         loop {
-            match child.number() {
-                Ok(leaf) => {
-                    if test_leaf::<L, ANY>(&self.primitives, self.primitives.leaves[leaf], ray) && ANY {
+            match child.kind() {
+                Kind::Nothing | Kind::Leaf(_) => {}
+                Kind::Block(block) => {
+                    found |= self.test_alone::<L, ANY>(packet, ray, octant, block);
+                    if ANY && found {
                         return true;
                     }
                 }
-                Err(number) => {
-                    let node = &self.nodes[number];
-                    let mut met = boxes.meet(node, ray.t, &mut near);
+                Kind::Node(number) => {
+                    let node = &self.nodes[number as usize];
+                    let mut met = boxes.meet(node, packet.t[ray], &mut near);
                     if met & met.wrapping_sub(1) == 0 {
                         if met != 0 {
                             child = node.child[met.trailing_zeros() as usize & 7];
@@ -59,6 +45,7 @@ impl Bvh {
                         let first = waiting.len();
                         while met != 0 {
                             let slot = met.trailing_zeros() as usize & 7;
+                            self.prefetch(node.child[slot]);
                             waiting.push(Waiting { t: near[slot], child: node.child[slot] });
                             met &= met - 1;
                         }
@@ -70,13 +57,53 @@ impl Bvh {
             }
             child = loop {
                 match waiting.pop() {
-                    None => return false,
+                    None => return found,
                     // Hits found meanwhile may have closed this box.
-                    Some(next) if next.t <= ray.t => break next.child,
+                    Some(next) if next.t <= packet.t[ray] => break next.child,
                     Some(_) => {}
                 }
             };
         }
+    }
+
+    /// Tests the primitives of a leaf against one ray and keeps the nearest hit; says whether there was one.
+    #[inline(always)]
+    pub(super) fn test_alone<L: Lanes, const ANY: bool>(
+        &self,
+        packet: &mut Packet,
+        ray: usize,
+        octant: &Octant,
+        block: Block,
+    ) -> bool {
+        let Block { at, spheres, triangles } = block;
+        let mut found = false;
+        let numbers = &self.primitives.numbers[at..];
+        if spheres > 0 {
+            let (origin, dir) = (packet.one(&packet.origin, ray, [0, 1, 2]), packet.one(&packet.dir, ray, [0, 1, 2]));
+            for start in (0..spheres).step_by(L::WIDTH) {
+                let center = vectors(&numbers[start..], spheres, [0, 1, 2]);
+                let radius = L::load(&numbers[3 * spheres + start..]);
+                let (t, meets) = sphere::intersect(origin, dir, center, radius);
+                let meets = meets & L::Mask::first(spheres - start);
+                found |= keep::<L, ANY>(packet, ray, t, meets, &numbers[4 * spheres + start..]);
+            }
+        }
+        if triangles > 0 {
+            let k = octant.axes;
+            let origin = packet.one(&packet.origin, ray, k);
+            let (x, y) = (L::splat(packet.shear[0][ray]), L::splat(packet.shear[1][ray]));
+            let shear = Shear(Vec3::new(x, y, L::splat(packet.inv_dir[k[2]][ray])));
+            let numbers = &numbers[SPHERE * spheres..];
+            for start in (0..triangles).step_by(L::WIDTH) {
+                let a = vectors(&numbers[start..], triangles, k);
+                let b = vectors(&numbers[start..], triangles, [k[0] + 3, k[1] + 3, k[2] + 3]);
+                let c = vectors(&numbers[start..], triangles, [k[0] + 6, k[1] + 6, k[2] + 6]);
+                let hit = triangle::intersect(origin, &shear, [a, b, c]);
+                let meets = hit.meets & L::Mask::first(triangles - start);
+                found |= keep::<L, ANY>(packet, ray, hit.t, meets, &numbers[(TRIANGLE - 1) * triangles + start..]);
+            }
+        }
+        found
     }
 }
 
@@ -102,12 +129,12 @@ struct Boxes<L> {
 
 impl<L: Lanes> Boxes<L> {
     #[inline(always)]
-    fn new(ray: &SingleRay) -> Self {
+    fn new(packet: &Packet, ray: usize, octant: &Octant) -> Self {
         Self {
-            origin: Vec3::from(ray.origin).splat().into(),
-            inv_dir: Vec3::from(ray.inv_dir).splat().into(),
-            side: ray.side,
-            t_min: L::splat(ray.t_min),
+            origin: packet.one(&packet.origin, ray, [0, 1, 2]).into(),
+            inv_dir: packet.one(&packet.inv_dir, ray, [0, 1, 2]).into(),
+            side: octant.side,
+            t_min: L::splat(packet.t_min[ray]),
         }
     }
 
@@ -122,52 +149,14 @@ impl<L: Lanes> Boxes<L> {
             let (mut enter, mut leave) = (self.t_min, limit);
             for axis in 0..3 {
                 let (side, o, i) = (self.side[axis] & 1, self.origin[axis], self.inv_dir[axis]);
-                enter = ((node.plane::<L>(axis, side, start) - o) * i).max(enter);
-                leave = ((node.plane::<L>(axis, 1 - side, start) - o) * i).min(leave);
+                enter = ((L::load_f32(&node.side(axis, side)[start..]) - o) * i).max(enter);
+                leave = ((L::load_f32(&node.side(axis, 1 - side)[start..]) - o) * i).min(leave);
             }
             enter.store(&mut near[start..]);
             met |= enter.le(leave).bits() << start;
         }
         met
     }
-}
-
-/// Tests the primitives of a leaf and keeps the nearest hit; says whether there was one.
-#[inline(always)]
-fn test_leaf<L: Lanes, const ANY: bool>(primitives: &Primitives, leaf: Leaf, ray: &mut SingleRay) -> bool {
-    let (spheres, triangles) = (usize::from(leaf.spheres), usize::from(leaf.triangles));
-    let mut found = false;
-    let numbers = &primitives.numbers[leaf.at as usize..];
-    if spheres > 0 {
-        let (origin, dir) = (Vec3::from(ray.origin).splat::<L>(), Vec3::from(ray.dir).splat::<L>());
-        for start in (0..spheres).step_by(L::WIDTH) {
-            let center = vectors(&numbers[start..], spheres, [0, 1, 2]);
-            let radius = L::load(&numbers[3 * spheres + start..]);
-            let (t, meets) = sphere::intersect(origin, dir, center, radius);
-            found |= keep::<L, ANY>(primitives, leaf.first as usize + start, spheres - start, t, meets, ray);
-            if found && ANY {
-                return true;
-            }
-        }
-    }
-    if triangles > 0 {
-        let k = axes(ray.main);
-        let origin = Vec3::new(L::splat(ray.origin[k[0]]), L::splat(ray.origin[k[1]]), L::splat(ray.origin[k[2]]));
-        let shear = Shear(Vec3::new(ray.shear[0], ray.shear[1], ray.inv_dir[k[2]]).splat::<L>());
-        let numbers = &numbers[4 * spheres..];
-        for start in (0..triangles).step_by(L::WIDTH) {
-            let a = vectors(&numbers[start..], triangles, k);
-            let b = vectors(&numbers[start..], triangles, [k[0] + 3, k[1] + 3, k[2] + 3]);
-            let c = vectors(&numbers[start..], triangles, [k[0] + 6, k[1] + 6, k[2] + 6]);
-            let hit = triangle::intersect(origin, &shear, [a, b, c]);
-            let first = leaf.first as usize + spheres + start;
-            found |= keep::<L, ANY>(primitives, first, triangles - start, hit.t, hit.meets, ray);
-            if found && ANY {
-                return true;
-            }
-        }
-    }
-    found
 }
 
 /// Three numbers of neighbouring primitives, from these columns of a leaf.
@@ -178,26 +167,17 @@ fn vectors<L: Lanes>(numbers: &[f64], stride: usize, [x, y, z]: [usize; 3]) -> V
 
 /// Keeps the nearest of some hits; at equal distance that of the lower id.
 #[inline(always)]
-fn keep<L: Lanes, const ANY: bool>(
-    primitives: &Primitives,
-    first: usize,
-    count: usize,
-    t: L,
-    meets: L::Mask,
-    ray: &mut SingleRay,
-) -> bool {
-    let open = meets & t.gt(L::splat(ray.t_min)) & t.le(L::splat(ray.t)) & L::Mask::first(count);
-    let mut bits = open.bits();
+fn keep<L: Lanes, const ANY: bool>(packet: &mut Packet, ray: usize, t: L, meets: L::Mask, ids: &[f64]) -> bool {
+    let id = L::load(ids);
+    let open = meets & t.gt(L::splat(packet.t_min[ray])) & t.le(L::splat(packet.t[ray]));
+    let mut bits = (open & !id.eq(L::splat(packet.source[ray]))).bits();
     let mut found = false;
     while bits != 0 {
         let lane = bits.trailing_zeros() as usize;
         bits &= bits - 1;
-        let (t, id) = (t.lane(lane), f64::from(primitives.ids[first + lane]));
-        if id != ray.source && (t < ray.t || (t == ray.t && id < ray.primitive)) {
-            (ray.t, ray.primitive, found) = (t, id, true);
-            if ANY {
-                return true;
-            }
+        let (t, id) = (t.lane(lane), ids[lane]);
+        if t < packet.t[ray] || (t == packet.t[ray] && id < packet.primitive[ray]) {
+            (packet.t[ray], packet.primitive[ray], found) = (t, id, true);
         }
     }
     found

@@ -1,0 +1,181 @@
+//! Building the tree: a binary one from the top (`binned`, `division`), made better where there is time for it
+//! (`reinsertion`), and from it one with eight children a node (`collapse`).
+//!
+//! The work is bounded for any input, also for a million primitives in the same place: below [`SAH_DEPTH`] levels, and
+//! where all centres coincide, a node is cut into halves by count. The tree does not depend on the number of threads:
+//! they share out work that is divided in the same way for all numbers, and join only boxes and counts, which are exact.
+
+mod binned;
+mod collapse;
+mod division;
+mod item;
+mod reinsertion;
+
+use super::node::Tree;
+use crate::geometry::bounds::OuterBox;
+use binned::{Bins, Grid, Split};
+use collapse::{Binary, Costs, Piece};
+use item::{Extent, Item};
+use rayon::prelude::*;
+
+/// From this depth on nodes are halved, and 2^32 primitives are used up after 32 more levels.
+const SAH_DEPTH: usize = 64;
+/// No tree is deeper: no way down passes more nodes. Real ones have about ten levels.
+pub(super) const MAX_DEPTH: usize = SAH_DEPTH + 33;
+/// Fewer primitives are not worth a second thread.
+const PARALLEL: usize = 1 << 12;
+
+/// How much work goes into the tree. It changes times only, never the picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Quality {
+    /// Boxes are cut in the middle. Built in less than half the time; traversal visits about a tenth more.
+    Fast,
+    /// The surface area heuristic.
+    #[default]
+    Good,
+    /// The surface area heuristic down to single primitives, then every part of the tree is tried elsewhere. Takes five
+    /// to ten times as long; traversal visits up to a tenth less, where primitives are of different sizes.
+    Best,
+}
+
+/// Builds the tree over `count` primitives, fewer than 2³¹, whose boxes are `bounds(primitive)`; they have no NaN.
+/// `threads`: 0 for as many as there are processors.
+pub(super) fn build(count: usize, bounds: impl Fn(usize) -> OuterBox + Sync, quality: Quality, threads: usize) -> Tree {
+    if threads != 1 && count > PARALLEL {
+        // Where there are no threads to be had (WASM), the caller does the work.
+        if let Ok(pool) = rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
+            return pool.install(|| Builder { quality, parallel: true }.build(count, &bounds));
+        }
+    }
+    Builder { quality, parallel: false }.build(count, &bounds)
+}
+
+struct Builder {
+    quality: Quality,
+    parallel: bool,
+}
+
+/// What was made of some items: a part of the binary tree, where their boxes lie, and the costs of the part.
+struct Grown<Part> {
+    part: Part,
+    extent: Extent,
+    costs: Costs,
+}
+
+impl Builder {
+    fn build(&self, count: usize, bounds: &(impl Fn(usize) -> OuterBox + Sync)) -> Tree {
+        if count == 0 {
+            return Tree::default();
+        }
+        let item = |id: usize| Item::new(id as u32, &bounds(id));
+        let mut items: Vec<Item> =
+            if self.parallel { (0..count).into_par_iter().map(item).collect() } else { (0..count).map(item).collect() };
+        let centers = if self.parallel {
+            items.par_chunks(PARALLEL).map(binned::centers).reduce(|| Extent::EMPTY, |a, b| a.join(&b))
+        } else {
+            binned::centers(&items)
+        };
+        let mut binary = self.grow_pieces(&mut items, &centers, 1).part;
+        let mut order: Vec<u32> =
+            if self.parallel { items.par_iter().map(Item::id).collect() } else { items.iter().map(Item::id).collect() };
+        drop(items);
+        if self.quality == Quality::Best {
+            let improved;
+            (improved, order) = reinsertion::improve(binary.flatten(), order, MAX_DEPTH, self.parallel);
+            binary = Piece::Whole(improved);
+        }
+        collapse::collapse(&binary, order, self.parallel)
+    }
+
+    /// The part over some items, with both children of a large node at the same time.
+    fn grow_pieces(&self, items: &mut [Item], centers: &Extent, depth: usize) -> Grown<Piece> {
+        let (count, mut bins) = (items.len(), Bins::EMPTY);
+        if !self.parallel || count <= PARALLEL {
+            let mut nodes = Vec::with_capacity(count);
+            let Grown { extent, costs, .. } = self.grow(items, centers, depth, &mut nodes, &mut bins);
+            return Grown { part: Piece::Whole(nodes), extent, costs };
+        }
+        let (left, [left_centers, right_centers]) = self.split(items, centers, depth, &mut bins);
+        let (left, right) = items.split_at_mut(left);
+        let (left, right) = rayon::join(
+            || self.grow_pieces(left, &left_centers, depth + 1),
+            || self.grow_pieces(right, &right_centers, depth + 1),
+        );
+        let extent = left.extent.join(&right.extent);
+        let (root, costs) = Binary::inner(&extent, count, 1 + left.part.len(), [&left.costs, &right.costs]);
+        Grown { part: Piece::Joined { root, children: Box::new([left.part, right.part]) }, extent, costs }
+    }
+
+    /// Appends the part over some items. `bins`: room to work.
+    fn grow(
+        &self,
+        items: &mut [Item],
+        centers: &Extent,
+        depth: usize,
+        nodes: &mut Vec<Binary>,
+        bins: &mut Bins,
+    ) -> Grown<()> {
+        let (index, count) = (nodes.len(), items.len());
+        nodes.push(Binary::UNFINISHED);
+        let (extent, (node, costs));
+        if count <= self.smallest() {
+            extent = items.iter().fold(Extent::EMPTY, |all, item| all.join(&item.0));
+            (node, costs) = Binary::leaf(&extent, count);
+        } else {
+            let (left, [left_centers, right_centers]) = self.split(items, centers, depth, bins);
+            let (left, right) = items.split_at_mut(left);
+            let left = self.grow(left, &left_centers, depth + 1, nodes, bins);
+            let right_index = nodes.len();
+            let right = self.grow(right, &right_centers, depth + 1, nodes, bins);
+            extent = left.extent.join(&right.extent);
+            (node, costs) = Binary::inner(&extent, count, right_index - index, [&left.costs, &right.costs]);
+        }
+        nodes[index] = node;
+        Grown { part: (), extent, costs }
+    }
+
+    /// So few items are not split any more. Whether larger leaves are better, `collapse` finds out.
+    fn smallest(&self) -> usize {
+        match self.quality {
+            Quality::Fast => 4,
+            Quality::Good => 2,
+            Quality::Best => 1,
+        }
+    }
+
+    /// Sorts the items of a node, more than one, into two parts, of which none is empty; gives the size of the first,
+    /// and where the centres of each part lie.
+    fn split(&self, items: &mut [Item], centers: &Extent, depth: usize, bins: &mut Bins) -> (usize, [Extent; 2]) {
+        let count = items.len();
+        if self.quality != Quality::Fast && count <= division::FEW {
+            // What follows needs no centres.
+            return (division::divide(items), [Extent::EMPTY; 2]);
+        }
+        let split = if depth >= SAH_DEPTH {
+            None
+        } else if self.quality == Quality::Fast {
+            Split::middle(centers)
+        } else {
+            let grid = Grid::new(centers, count);
+            if self.parallel && count > binned::MANY {
+                *bins = Bins::of_many(items, &grid);
+            } else {
+                bins.fill(items, &grid);
+            }
+            Split::best(bins, &grid, count)
+        };
+        // Both parts have items, as the same numbers come out each time. Where they are infinite, who knows.
+        if let Some((left, centers)) = split.map(|split| split.partition(items))
+            && (1..count).contains(&left)
+        {
+            return (left, centers);
+        }
+        let (left, right) = items.split_at(count / 2);
+        (left.len(), [binned::centers(left), binned::centers(right)])
+    }
+}
+
+#[cfg(test)]
+mod measure;
+#[cfg(test)]
+mod tests;
