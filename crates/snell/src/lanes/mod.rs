@@ -44,13 +44,14 @@ const TWO_TO_52: f64 = 4_503_599_627_370_496.0;
 /// No width is larger.
 pub(crate) const MAX_WIDTH: usize = 8;
 
-/// Tells the machine that these numbers will soon be read, so that it fetches them while something else is done.
+/// Tells the machine that four cache lines from this value on will soon be read, so that it fetches them while something
+/// else is done.
 #[inline(always)]
-pub(crate) fn prefetch<T>(values: &[T]) {
+pub(crate) fn prefetch<T>(values: &[T], index: usize) {
     #[cfg(target_arch = "x86_64")]
-    x86::prefetch(values);
+    x86::prefetch(values, index);
     #[cfg(not(target_arch = "x86_64"))]
-    let _ = values;
+    let _ = (values, index);
 }
 
 /// One yes or no per lane.
@@ -162,6 +163,15 @@ pub trait Lanes:
         let first = Self::from_fn(|lane| f64::from_bits(half(lane) << 52));
         let second = Self::from_fn(|lane| f64::from_bits((biased.lane(lane).to_bits() - half(lane)) << 52));
         self * first * second
+    }
+
+    /// The largest of all lanes, none of which is NaN.
+    #[inline(always)]
+    fn largest(self) -> f64 {
+        let mut values = [f64::NEG_INFINITY; MAX_WIDTH];
+        self.store(&mut values);
+        let [a, b, c, d, e, f, g, h] = values;
+        a.max(b).max(c.max(d)).max(e.max(f).max(g.max(h)))
     }
 
     /// `self > other`.

@@ -18,8 +18,8 @@ pub use primitives::Shapes;
 use super::Vec3;
 use super::bounds::OuterBox;
 use crate::lanes::prefetch;
-use node::{Block, Child, Kind, Node};
-use primitives::{Primitives, SPHERE, TRIANGLE};
+use node::{Child, Kind, Node};
+use primitives::Primitives;
 
 /// Relative size of the margin around each primitive: 2⁻⁴⁸ of the farthest distance from which a ray can come.
 ///
@@ -37,6 +37,28 @@ const MARGIN: f64 = 1.0 / (1u64 << 48) as f64;
 pub struct Bvh {
     nodes: Vec<Node>,
     primitives: Primitives,
+}
+
+/// Boxes of a node that are met, as bits, from the farthest to the nearest: `near` says where they are entered.
+///
+/// Distances up to the nearest 2⁻⁴⁹ of themselves are taken as equal: places stand in the last three bits of the pattern, and
+/// patterns of positive numbers are in their order.
+#[inline(always)]
+fn farthest_first(mut met: u32, near: &[f64; node::WIDTH], keys: &mut [u64; node::WIDTH]) -> usize {
+    let mut count = 0;
+    while met != 0 {
+        let slot = met.trailing_zeros() as usize & 7;
+        met &= met - 1;
+        let key = near[slot].to_bits() & !7 | slot as u64;
+        let mut at = count;
+        while at > 0 && keys[at - 1] < key {
+            keys[at & 7] = keys[at - 1];
+            at -= 1;
+        }
+        keys[at & 7] = key;
+        count += 1;
+    }
+    count
 }
 
 /// A box that a single ray will enter at `t`.
@@ -60,10 +82,8 @@ impl Bvh {
     #[inline(always)]
     fn prefetch(&self, child: Child) {
         match child.kind() {
-            Kind::Node(number) => prefetch(std::slice::from_ref(&self.nodes[number as usize])),
-            Kind::Block(Block { at, spheres, triangles }) => {
-                prefetch(&self.primitives.numbers[at..at + SPHERE * spheres + TRIANGLE * triangles]);
-            }
+            Kind::Node(number) => prefetch(&self.nodes, number as usize),
+            Kind::Block(block) => prefetch(&self.primitives.numbers, block.at),
             Kind::Leaf(_) | Kind::Nothing => {}
         }
     }

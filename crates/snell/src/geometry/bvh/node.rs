@@ -7,6 +7,12 @@ pub(crate) const WIDTH: usize = 8;
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Child(u64);
 
+impl Default for Child {
+    fn default() -> Self {
+        Self::NOTHING
+    }
+}
+
 /// [`Child`], taken apart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {

@@ -8,7 +8,8 @@
 
 use super::node::{self, Block, Child, Kind, Node};
 use super::primitives::{SPHERE, TRIANGLE};
-use super::{Bvh, Waiting};
+use super::{Bvh, farthest_first};
+use super::single::Walker;
 use crate::geometry::ray::{Shear, axes, inverse};
 use crate::geometry::{Vec3, sphere, triangle};
 use crate::lanes::{Lanes, Mask};
@@ -18,7 +19,7 @@ use std::marker::PhantomData;
 pub(crate) const SIZE: usize = 64;
 
 /// So few rays go on alone.
-const FEW: u32 = 4;
+const FEW: u32 = 8;
 
 type Column = [f64; SIZE];
 
@@ -42,9 +43,10 @@ pub(crate) struct Packet {
     negative: [u64; 3],
     /// Which rays have this axis as their main one.
     main: [u64; 3],
-    /// Boxes that wait, of the packet and of a single ray.
+    /// Boxes that wait.
     waiting: Vec<BeamWaiting>,
-    waiting_single: Vec<Waiting>,
+    /// Rays that go alone.
+    walkers: Vec<Walker>,
 }
 
 /// A box that some rays of a packet may enter, at `t` or later.
@@ -71,7 +73,7 @@ impl Default for Packet {
             negative: [0; 3],
             main: [0; 3],
             waiting: Vec::new(),
-            waiting_single: Vec::new(),
+            walkers: Vec::new(),
         }
     }
 }
@@ -137,6 +139,15 @@ impl Packet {
         Vec3::new(L::load(&columns[x][start..]), L::load(&columns[y][start..]), L::load(&columns[z][start..]))
     }
 
+    /// Where a ray goes.
+    #[inline(always)]
+    pub(super) fn octant(&self, ray: usize) -> Octant {
+        let [x, y, z] = self.negative;
+        let bit = |set: u64| (set >> ray & 1) as usize;
+        let main = if bit(self.main[0]) == 1 { 0 } else { 2 - bit(self.main[1]) };
+        Octant { side: [bit(x), bit(y), bit(z)], axes: axes(main) }
+    }
+
     /// A vector of one ray in every lane.
     #[inline(always)]
     pub(super) fn one<L: Lanes>(&self, columns: &[Column; 3], ray: usize, [x, y, z]: [usize; 3]) -> Vec3<L> {
@@ -151,11 +162,12 @@ impl Packet {
         for (start, mask) in groups::<L>(rays) {
             farthest = L::select(mask, L::load(&self.t[start..]), none).max(farthest);
         }
-        over_lanes([none, farthest])[1]
+        farthest.largest()
     }
 }
 
 /// What rays have in common that go the same way.
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Octant {
     /// For each axis 1 where they go towards smaller coordinates.
     pub side: [usize; 3],
@@ -185,8 +197,10 @@ impl Beam {
         }
         let mut beam = Self { origin: [[0.0; 2]; 3], inv_dir: [[0.0; 2]; 3], side };
         for axis in 0..3 {
-            beam.origin[axis] = over_lanes(bounds[axis]);
-            beam.inv_dir[axis] = over_lanes(bounds[axis + 3]);
+            let [low, high] = bounds[axis];
+            beam.origin[axis] = [-(-low).largest(), high.largest()];
+            let [low, high] = bounds[axis + 3];
+            beam.inv_dir[axis] = [-(-low).largest(), high.largest()];
         }
         beam
     }
@@ -224,23 +238,26 @@ impl Bvh {
         if self.nodes.is_empty() {
             return 0;
         }
-        let mut hit = 0;
+        let (mut hit, mut loners) = (0, 0);
         while rays != 0 {
-            let first = rays.trailing_zeros();
-            let (mut alike, mut side, mut main) = (rays, [0; 3], 2);
+            let first = rays.trailing_zeros() as usize & (SIZE - 1);
+            let octant = packet.octant(first);
+            let mut alike = rays & packet.main[octant.axes[2]];
             for axis in 0..3 {
-                let negative = packet.negative[axis] >> first & 1 == 1;
-                side[axis] = usize::from(negative);
-                alike &= if negative { packet.negative[axis] } else { !packet.negative[axis] };
-                if packet.main[axis] >> first & 1 == 1 {
-                    main = axis;
-                }
+                let negative = packet.negative[axis];
+                alike &= if octant.side[axis] == 1 { negative } else { !negative };
             }
-            alike &= packet.main[main];
             // A direction without any sense has no main axis.
             alike |= 1 << first;
             rays &= !alike;
-            hit |= self.descend::<L, ANY>(packet, alike, &Octant { side, axes: axes(main) });
+            if alike.count_ones() <= FEW {
+                loners |= alike;
+            } else {
+                hit |= self.descend::<L, ANY>(packet, alike, &octant);
+            }
+        }
+        if loners != 0 {
+            hit |= self.follow_each::<L, ANY>(packet, loners, Child::ROOT);
         }
         hit
     }
@@ -250,7 +267,7 @@ impl Bvh {
     fn descend<L: Lanes, const ANY: bool>(&self, packet: &mut Packet, all: u64, octant: &Octant) -> u64 {
         let beam = Beam::new::<L>(packet, all, octant.side);
         let mut farthest = packet.farthest::<L>(all);
-        let mut near = [0.0; node::WIDTH];
+        let (mut near, mut keys) = ([0.0; node::WIDTH], [0; node::WIDTH]);
         let (mut hit, mut rays, mut child) = (0, all, Child::ROOT);
         packet.waiting.clear();
         loop {
@@ -262,18 +279,17 @@ impl Bvh {
                 }
                 Kind::Block(block) => found = self.test_together::<L, ANY>(packet, rays, octant, block),
                 Kind::Node(_) if rays.count_ones() <= FEW => {
-                    found = self.follow_each::<L, ANY>(packet, rays, octant, child);
+                    found = self.follow_each::<L, ANY>(packet, rays, child);
                 }
                 Kind::Node(number) => {
-                    let mut met = beam.meet::<L>(&self.nodes[number as usize], farthest, &mut near);
-                    let first = packet.waiting.len();
-                    while met != 0 {
-                        let slot = met.trailing_zeros() & 7;
-                        met &= met - 1;
-                        self.prefetch(self.nodes[number as usize].child[slot as usize]);
-                        packet.waiting.push(BeamWaiting { t: near[slot as usize], rays, node: number, slot });
+                    let node = &self.nodes[number as usize];
+                    let met = beam.meet::<L>(node, farthest, &mut near);
+                    let count = farthest_first(met, &near, &mut keys);
+                    for &key in &keys[..count] {
+                        let slot = key as usize & 7;
+                        self.prefetch(node.child[slot]);
+                        packet.waiting.push(BeamWaiting { t: near[slot], rays, node: number, slot: slot as u32 });
                     }
-                    farthest_first(&mut packet.waiting[first..]);
                 }
             }
             hit |= found;
@@ -298,23 +314,17 @@ impl Bvh {
         }
     }
 
-    /// Follows one ray after the other from a node on.
+    /// Lets some rays go on alone from a node.
     #[inline(always)]
     fn follow_each<L: Lanes, const ANY: bool>(
         &self,
         packet: &mut Packet,
-        mut rays: u64,
-        octant: &Octant,
+        rays: u64,
         from: Child,
     ) -> u64 {
-        let mut hit = 0;
-        let mut waiting = std::mem::take(&mut packet.waiting_single);
-        while rays != 0 {
-            let ray = rays.trailing_zeros() as usize & (SIZE - 1);
-            rays &= rays - 1;
-            hit |= u64::from(self.follow::<L, ANY>(packet, ray, octant, from, &mut waiting)) << ray;
-        }
-        packet.waiting_single = waiting;
+        let mut walkers = std::mem::take(&mut packet.walkers);
+        let hit = self.follow::<L, ANY>(packet, rays, from, &mut walkers);
+        packet.walkers = walkers;
         hit
     }
 
@@ -435,16 +445,6 @@ impl<L: Lanes> Nearest<L> {
     }
 }
 
-/// The extremes over all lanes.
-#[inline(always)]
-fn over_lanes<L: Lanes>([low, high]: [L; 2]) -> [f64; 2] {
-    let mut ends = [f64::INFINITY, f64::NEG_INFINITY];
-    for lane in 0..L::WIDTH {
-        ends = [ends[0].min(low.lane(lane)), ends[1].max(high.lane(lane))];
-    }
-    ends
-}
-
 /// Which of these rays meet one box of a node.
 #[inline(always)]
 fn enter<L: Lanes>(packet: &Packet, node: &Node, slot: usize, rays: u64, side: [usize; 3]) -> u64 {
@@ -462,16 +462,4 @@ fn enter<L: Lanes>(packet: &Packet, node: &Node, slot: usize, rays: u64, side: [
         met |= u64::from((active & enter.le(leave)).bits()) << start;
     }
     met
-}
-
-/// Insertion sort: few, and nearly in order.
-#[inline(always)]
-fn farthest_first(waiting: &mut [BeamWaiting]) {
-    for i in 1..waiting.len() {
-        let mut at = i;
-        while at > 0 && waiting[at - 1].t < waiting[at].t {
-            waiting.swap(at - 1, at);
-            at -= 1;
-        }
-    }
 }

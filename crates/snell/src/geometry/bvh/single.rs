@@ -3,67 +3,105 @@
 use super::node::{self, Block, Child, Kind, Node};
 use super::packet::{Octant, Packet};
 use super::primitives::{SPHERE, TRIANGLE};
-use super::{Bvh, Waiting};
+use super::{Bvh, Waiting, farthest_first};
 use crate::geometry::ray::Shear;
 use crate::geometry::{Vec3, sphere, triangle};
 use crate::lanes::{Lanes, Mask};
 
+/// So many rays are on their way at the same time.
+const WALKERS: usize = 8;
+
+/// A ray on its way through the tree alone.
+#[derive(Debug, Default)]
+pub(super) struct Walker {
+    ray: usize,
+    octant: Octant,
+    /// What it visits next.
+    child: Child,
+    /// What it visits later.
+    waiting: Vec<Waiting>,
+}
+
 impl Bvh {
-    /// Follows one ray of a packet from a node on; near boxes first. With `ANY` it stops at the first hit. Says whether it
-    /// found one.
+    /// Follows some rays of a packet from a node on, each its own way, near boxes first. With `ANY` a ray stops at its first
+    /// hit. Says which rays found one.
+    ///
+    /// A ray spends most of its time waiting for memory. So several are on their way in turns: while the next node of one
+    /// is being fetched, the others make a step.
     #[inline(always)]
     pub(super) fn follow<L: Lanes, const ANY: bool>(
         &self,
         packet: &mut Packet,
-        ray: usize,
-        octant: &Octant,
+        mut rays: u64,
         from: Child,
-        waiting: &mut Vec<Waiting>,
-    ) -> bool {
-        let boxes = Boxes::<L>::new(packet, ray, octant);
-        let mut near = [0.0; node::WIDTH];
-        let (mut child, mut found) = (from, false);
-        waiting.clear();
-        loop {
-            match child.kind() {
+        walkers: &mut Vec<Walker>,
+    ) -> u64 {
+        walkers.resize_with(WALKERS, Walker::default);
+        let (mut near, mut keys) = ([0.0; node::WIDTH], [0; node::WIDTH]);
+        let mut hit = 0;
+        let mut walking = 0;
+        while walking < WALKERS && rays != 0 {
+            let ray = rays.trailing_zeros() as usize & 63;
+            rays &= rays - 1;
+            walkers[walking].start(packet, ray, from);
+            walking += 1;
+        }
+        let mut turn = 0;
+        while walking > 0 {
+            let walker = &mut walkers[turn];
+            let (ray, octant) = (walker.ray, &walker.octant);
+            let mut done = false;
+            let mut next = Child::NOTHING;
+            match walker.child.kind() {
                 Kind::Nothing | Kind::Leaf(_) => {}
                 Kind::Block(block) => {
-                    found |= self.test_alone::<L, ANY>(packet, ray, octant, block);
-                    if ANY && found {
-                        return true;
-                    }
+                    let found = self.test_alone::<L, ANY>(packet, ray, octant, block);
+                    hit |= u64::from(found) << ray;
+                    done = ANY && found;
                 }
                 Kind::Node(number) => {
                     let node = &self.nodes[number as usize];
-                    let mut met = boxes.meet(node, packet.t[ray], &mut near);
+                    let met = Boxes::<L>::new(packet, ray, octant).meet(node, packet.t[ray], &mut near);
                     if met & met.wrapping_sub(1) == 0 {
                         if met != 0 {
-                            child = node.child[met.trailing_zeros() as usize & 7];
-                            continue;
+                            next = node.child[met.trailing_zeros() as usize & 7];
                         }
                     } else {
-                        let first = waiting.len();
-                        while met != 0 {
-                            let slot = met.trailing_zeros() as usize & 7;
-                            self.prefetch(node.child[slot]);
-                            waiting.push(Waiting { t: near[slot], child: node.child[slot] });
-                            met &= met - 1;
+                        let count = farthest_first(met, &near, &mut keys);
+                        for &key in &keys[..count - 1] {
+                            let slot = key as usize & 7;
+                            walker.waiting.push(Waiting { t: near[slot], child: node.child[slot] });
                         }
-                        if !ANY {
-                            farthest_first(&mut waiting[first..]);
-                        }
+                        next = node.child[keys[count - 1] as usize & 7];
                     }
                 }
             }
-            child = loop {
-                match waiting.pop() {
-                    None => return found,
+            while !done && next == Child::NOTHING {
+                match walker.waiting.pop() {
+                    None => done = true,
                     // Hits found meanwhile may have closed this box.
-                    Some(next) if next.t <= packet.t[ray] => break next.child,
+                    Some(waiting) if waiting.t <= packet.t[ray] => next = waiting.child,
                     Some(_) => {}
                 }
-            };
+            }
+            if !done {
+                self.prefetch(next);
+                walker.child = next;
+                turn += 1;
+            } else if rays != 0 {
+                let ray = rays.trailing_zeros() as usize & 63;
+                rays &= rays - 1;
+                walker.start(packet, ray, from);
+                turn += 1;
+            } else {
+                walking -= 1;
+                walkers.swap(turn, walking);
+            }
+            if turn >= walking {
+                turn = 0;
+            }
         }
+        hit
     }
 
     /// Tests the primitives of a leaf against one ray and keeps the nearest hit; says whether there was one.
@@ -107,15 +145,11 @@ impl Bvh {
     }
 }
 
-/// Insertion sort: mostly two or three.
-#[inline(always)]
-fn farthest_first(waiting: &mut [Waiting]) {
-    for i in 1..waiting.len() {
-        let mut at = i;
-        while at > 0 && waiting[at - 1].t < waiting[at].t {
-            waiting.swap(at - 1, at);
-            at -= 1;
-        }
+impl Walker {
+    #[inline(always)]
+    fn start(&mut self, packet: &Packet, ray: usize, from: Child) {
+        (self.ray, self.octant, self.child) = (ray, packet.octant(ray), from);
+        self.waiting.clear();
     }
 }
 
