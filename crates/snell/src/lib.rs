@@ -51,6 +51,7 @@
 pub mod film;
 pub mod geometry;
 pub mod lanes;
+mod memory;
 pub mod optics;
 pub mod rays;
 pub mod render;

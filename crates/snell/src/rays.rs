@@ -55,7 +55,7 @@ impl RayBatch {
 
     /// Puts up to 64 rays from a row on into a packet, and says which places they take.
     #[inline(always)]
-    fn fill<L: Lanes>(&self, packet: &mut Packet, first: usize) -> u64 {
+    fn fill<L: Lanes>(&self, packet: &mut Packet, first: usize, shear: bool) -> u64 {
         let count = (self.len() - first).min(PACKET);
         for start in (0..count).step_by(L::WIDTH) {
             let row = first + start;
@@ -64,7 +64,7 @@ impl RayBatch {
             let origin = Vec3::new(lanes::<L>(ox, row), lanes(oy, row), lanes(oz, row));
             let dir = Vec3::new(lanes::<L>(dx, row), lanes(dy, row), lanes(dz, row));
             let (t_min, t_max) = (lanes(&self.t_min, row), lanes(&self.t_max, row));
-            packet.set(start, origin, dir, t_min, t_max, L::splat(-1.0));
+            packet.set(start, origin, dir, t_min, t_max, L::splat(-1.0), shear);
         }
         u64::MAX >> (PACKET - count)
     }
@@ -134,7 +134,7 @@ impl Kernel for Closest<'_> {
     fn run<L: Lanes>(self) {
         let Self { world, rays, first, packet, t, primitive } = self;
         for start in (0..t.len()).step_by(PACKET) {
-            let all = rays.fill::<L>(packet, first + start);
+            let all = rays.fill::<L>(packet, first + start, world.tree.has_triangles());
             let hit = world.tree.intersect::<L, false>(packet, all);
             let end = t.len().min(start + PACKET);
             t[start..end].copy_from_slice(&packet.t[..end - start]);
@@ -159,7 +159,7 @@ impl Kernel for Any<'_> {
     fn run<L: Lanes>(self) {
         let Self { world, rays, first, packet, blocked } = self;
         for (number, blocked) in blocked.chunks_mut(PACKET).enumerate() {
-            let all = rays.fill::<L>(packet, first + number * PACKET);
+            let all = rays.fill::<L>(packet, first + number * PACKET, world.tree.has_triangles());
             let hit = world.tree.intersect::<L, true>(packet, all);
             for (i, blocked) in blocked.iter_mut().enumerate() {
                 *blocked = hit >> i & 1 == 1;

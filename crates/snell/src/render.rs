@@ -174,7 +174,7 @@ impl Shared<'_> {
                 pixels.extend((left..right).map(|x| (self.crop.x + x as u32, self.crop.y + y as u32)));
             }
             let Some(radiance) = tracer.trace(&pixels) else { break };
-            self.store(&pixels, radiance);
+            self.store(left as usize, top as usize, (right - left) as usize, radiance);
             let rays = tracer.statistics.rays.total();
             self.report(pixels.len() as u64, rays - rays_before);
             rays_before = rays;
@@ -184,13 +184,14 @@ impl Shared<'_> {
         }
     }
 
-    fn store(&self, pixels: &[(u32, u32)], radiance: &[Rgb]) {
+    /// Stores the pixels of a tile, row by row.
+    fn store(&self, left: usize, top: usize, width: usize, radiance: &[Rgb]) {
         let Ok(mut result) = self.result.lock() else { return };
         let film = &mut result.film;
-        for (&(x, y), &value) in pixels.iter().zip(radiance) {
-            let index = (y - self.crop.y) as usize * film.width() + (x - self.crop.x) as usize;
-            film.pixels[index] = value;
-            film.finished[index] = true;
+        for (row, colors) in radiance.chunks(width).enumerate() {
+            let start = (top + row) * film.width() + left;
+            film.pixels[start..start + width].copy_from_slice(colors);
+            film.finished[start..start + width].fill(true);
         }
     }
 

@@ -9,7 +9,7 @@ use std::fmt;
 use std::ops::{Add, Mul, Sub};
 
 /// Red, green and blue, linear, 1 for white. In a file: `0.5`, or `[0.5, 0.2, 0.1]`.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Zeroable)]
 pub struct Rgb<L = f64> {
     /// Red.
     pub r: L,

@@ -5,6 +5,7 @@ pub mod transfer;
 
 pub use color::Rgb;
 
+use crate::memory;
 use std::fmt;
 
 /// A rectangle of pixels: left and top edge, width and height.
@@ -58,11 +59,8 @@ impl Film {
         let bytes = u64::from(width).saturating_mul(u64::from(height)).saturating_mul(BYTES_PER_PIXEL);
         let too_large = FilmTooLarge { width, height, bytes };
         let count = usize::try_from(u64::from(width) * u64::from(height)).map_err(|_| too_large)?;
-        let (mut pixels, mut finished) = (Vec::new(), Vec::new());
-        pixels.try_reserve_exact(count).map_err(|_| too_large)?;
-        finished.try_reserve_exact(count).map_err(|_| too_large)?;
-        pixels.resize(count, Rgb::black());
-        finished.resize(count, false);
+        let pixels = memory::zeros(count).ok_or(too_large)?;
+        let finished = memory::zeros(count).ok_or(too_large)?;
         Ok(Self { full_size, crop, pixels, finished })
     }
 

@@ -1,18 +1,22 @@
 //! A table of numbers by columns, written and read in whole lanes.
 
+#![allow(unsafe_code, reason = "one check for all columns instead of one for each; each block says why it is sound")]
+
 use super::{Lanes, MAX_WIDTH, Mask};
 
 /// `N` columns of the same length. Behind the last row every column has room for a full group of lanes, so that the last
 /// group is read like any other; what stands there are old values or zeros.
 #[derive(Clone, Debug)]
 pub(crate) struct Columns<const N: usize> {
-    columns: [Vec<f64>; N],
+    /// All of length `room`.
+    values: [Vec<f64>; N],
+    room: usize,
     len: usize,
 }
 
 impl<const N: usize> Default for Columns<N> {
     fn default() -> Self {
-        Self { columns: [(); N].map(|()| vec![0.0; MAX_WIDTH]), len: 0 }
+        Self { values: [(); N].map(|()| vec![0.0; MAX_WIDTH]), room: MAX_WIDTH, len: 0 }
     }
 }
 
@@ -29,55 +33,59 @@ impl<const N: usize> Columns<N> {
         self.len = 0;
     }
 
-    /// A column, with some values of no meaning behind the last row.
+    /// A column.
     #[inline(always)]
     pub fn column(&self, column: usize) -> &[f64] {
-        &self.columns[column]
+        &self.values[column][..self.len]
     }
 
     /// One number.
     #[inline(always)]
     pub fn at(&self, column: usize, row: usize) -> f64 {
-        self.columns[column][row]
+        self.values[column][row]
     }
 
     /// One column, from a row on.
     #[inline(always)]
     pub fn lanes<L: Lanes>(&self, column: usize, start: usize) -> L {
-        L::load(&self.columns[column][start..])
+        L::load(&self.values[column][start..])
     }
 
     /// Some neighbouring columns, from a row on.
     #[inline(always)]
-    pub fn group<L: Lanes, const M: usize>(&self, column: usize, start: usize) -> [L; M] {
+    pub fn group<L: Lanes, const M: usize>(&self, first: usize, start: usize) -> [L; M] {
+        assert!(start < self.room && start + L::WIDTH <= self.room, "no row {start}");
         let mut group = [L::splat(0.0); M];
-        for (i, lanes) in group.iter_mut().enumerate() {
-            *lanes = self.lanes(column + i, start);
+        for (lanes, column) in group.iter_mut().zip(&self.values[first..first + M]) {
+            // SAFETY: every column is of length `room`.
+            *lanes = L::load(unsafe { column.get_unchecked(start..start + L::WIDTH) });
         }
         group
     }
 
     /// Replaces neighbouring columns from a row on, in all lanes, also those behind the last row.
     #[inline(always)]
-    pub fn replace<L: Lanes, const M: usize>(&mut self, column: usize, start: usize, values: [L; M]) {
-        for (i, value) in values.into_iter().enumerate() {
-            value.store(&mut self.columns[column + i][start..]);
+    pub fn replace<L: Lanes, const M: usize>(&mut self, first: usize, start: usize, values: [L; M]) {
+        assert!(start < self.room && start + L::WIDTH <= self.room, "no row {start}");
+        for (value, column) in values.into_iter().zip(&mut self.values[first..first + M]) {
+            // SAFETY: every column is of length `room`.
+            value.store(unsafe { column.get_unchecked_mut(start..start + L::WIDTH) });
         }
     }
 
     /// Makes room for this many rows more.
     #[inline(always)]
     pub fn reserve(&mut self, rows: usize) {
-        let needed = self.len + rows + MAX_WIDTH;
-        if self.columns[0].len() < needed {
-            self.grow(needed);
+        if self.room - self.len < rows + MAX_WIDTH {
+            self.grow(self.len + rows + MAX_WIDTH);
         }
     }
 
     #[cold]
     fn grow(&mut self, needed: usize) {
-        for column in &mut self.columns {
-            column.resize(needed.next_power_of_two(), 0.0);
+        self.room = needed.next_power_of_two();
+        for column in &mut self.values {
+            column.resize(self.room, 0.0);
         }
     }
 
@@ -85,17 +93,21 @@ impl<const N: usize> Columns<N> {
     #[inline(always)]
     pub fn push<L: Lanes>(&mut self, mask: L::Mask, row: [L; N]) {
         self.reserve(L::WIDTH);
-        for (column, value) in self.columns.iter_mut().zip(row) {
-            value.compress(mask).store(&mut column[self.len..]);
+        let (start, count) = (self.len, mask.bits().count_ones() as usize);
+        for (column, value) in self.values.iter_mut().zip(row) {
+            // Mostly neighbours share their fate.
+            let value = if count == L::WIDTH { value } else { value.compress(mask) };
+            // SAFETY: every column is of length `room`, and `reserve` has left room for so many behind `len`.
+            value.store(unsafe { column.get_unchecked_mut(start..start + L::WIDTH) });
         }
-        self.len += mask.bits().count_ones() as usize;
+        self.len += count;
     }
 
     /// Appends some rows of another table.
     pub fn append(&mut self, other: &Self, rows: std::ops::Range<usize>) {
         self.reserve(rows.len());
-        for (column, more) in self.columns.iter_mut().zip(&other.columns) {
-            column[self.len..self.len + rows.len()].copy_from_slice(&more[rows.clone()]);
+        for (column, more) in self.values.iter_mut().zip(&other.values) {
+            column[self.len..self.len + rows.len()].copy_from_slice(&more[rows.start..rows.end]);
         }
         self.len += rows.len();
     }

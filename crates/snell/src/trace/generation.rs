@@ -2,7 +2,7 @@
 
 use super::hits::Hits;
 use super::lecture;
-use super::queue::{RayKind, RayQueue, Rays, Weight};
+use super::queue::{RayKind, RayQueue};
 use super::shading::{self, ShadowRays};
 use super::statistics::Statistics;
 use crate::film::Rgb;
@@ -102,21 +102,12 @@ impl<'a, L: Lanes, O: Observer> Tracer<'a, L, O> {
     #[inline(always)]
     fn camera_rays(&mut self, pixels: &[(u32, u32)]) -> RayQueue {
         let mut queue = self.empty_queue();
-        let white = Rgb::gray(1.0).splat();
         for (group, some) in pixels.chunks(L::WIDTH).enumerate() {
             let pixel = |lane: usize| some.get(lane).copied().unwrap_or_default();
             let (x, y) = (L::from_fn(|i| f64::from(pixel(i).0)), L::from_fn(|i| f64::from(pixel(i).1)));
             let (origin, dir) = self.world.camera.rays(x, y);
-            let rays = Rays {
-                origin,
-                dir,
-                t_min: L::splat(lecture::T_MIN),
-                weight: Weight { attenuation: white, factor: white },
-                pixel: L::from_fn(|lane| (group * L::WIDTH + lane) as f64),
-                source: L::splat(-1.0),
-                parent: L::splat(0.0),
-            };
-            queue.push(RayKind::Camera, L::Mask::first(some.len()), &rays);
+            let pixel = L::from_fn(|lane| (group * L::WIDTH + lane) as f64);
+            queue.push_camera_rays(L::Mask::first(some.len()), origin, dir, pixel);
         }
         queue
     }

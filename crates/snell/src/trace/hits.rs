@@ -41,7 +41,7 @@ impl Hits {
     pub fn find<L: Lanes>(&mut self, world: &World, queue: &RayQueue, packet: &mut Packet) {
         self.found.clear();
         for first in (0..queue.len()).step_by(PACKET) {
-            let rays = queue.fill::<L>(packet, first);
+            let rays = queue.fill::<L>(packet, first, world.tree.has_triangles());
             let hit = world.tree.intersect::<L, false>(packet, rays);
             for start in (0..PACKET).step_by(L::WIDTH) {
                 let mask = L::Mask::from_bits((hit >> start) as u32);

@@ -1,9 +1,10 @@
 //! The rays of a generation, as columns.
 
+use super::lecture::T_MIN;
 use crate::film::Rgb;
 use crate::geometry::Vec3;
 use crate::geometry::bvh::{PACKET, Packet};
-use crate::lanes::{Columns, Lanes};
+use crate::lanes::{Columns, Lanes, Mask};
 
 /// Where a ray comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,44 +49,65 @@ pub(crate) struct Rays<L: Lanes> {
     pub parent: L,
 }
 
-/// Columns of the queue: origin, direction and `t_min`; attenuation and factor; pixel, source and parent.
-const ORIGIN: usize = 0;
-const ATTENUATION: usize = 7;
-const PIXEL: usize = 13;
-const SOURCE: usize = 14;
-const PARENT: usize = 15;
+/// Columns of the ways: origin and direction, then the pixel.
+const PIXEL: usize = 6;
+/// Columns of the loads: attenuation and factor, then `t_min`, source and parent.
+const PARENT: usize = 8;
 
 /// Rays that are traced together, in a fixed order: camera rays, or mirror rays and then refracted ones.
 ///
 /// Whole numbers travel as `f64`, in which every `u32` is exact, so that all columns are of one kind.
 #[derive(Debug, Default)]
 pub(crate) struct RayQueue {
-    rays: Columns<16>,
-    /// How many camera rays, and mirror rays, stand in front.
+    /// Where the rays go.
+    ways: Columns<7>,
+    /// What they carry and where they come from; empty for camera rays, which all carry everything and come from nowhere.
+    loads: Columns<9>,
+    /// How many camera rays, or mirror rays, stand in front.
     camera: usize,
     mirror: usize,
+}
+
+/// What all camera rays share.
+#[derive(Clone, Copy, Debug)]
+struct Load<L: Lanes> {
+    weight: Weight<L>,
+    t_min: L,
+    source: L,
+    parent: L,
 }
 
 impl RayQueue {
     #[inline(always)]
     pub fn len(&self) -> usize {
-        self.rays.len()
+        self.ways.len()
     }
 
     #[inline(always)]
     pub fn clear(&mut self) {
-        self.rays.clear();
+        self.ways.clear();
+        self.loads.clear();
         (self.camera, self.mirror) = (0, 0);
     }
 
-    /// Appends the rays that the mask names. Kinds must come in the order of [`RayKind`].
+    /// Appends camera rays. No others may be in the queue.
+    #[inline(always)]
+    pub fn push_camera_rays<L: Lanes>(&mut self, mask: L::Mask, origin: Vec3<L>, dir: Vec3<L>, pixel: L) {
+        self.ways.push(mask, [origin.x, origin.y, origin.z, dir.x, dir.y, dir.z, pixel]);
+        self.camera = self.len();
+    }
+
+    /// Appends the mirror or refracted rays that the mask names, mirror rays first. No camera rays may be in the queue.
     #[inline(always)]
     pub fn push<L: Lanes>(&mut self, kind: RayKind, mask: L::Mask, rays: &Rays<L>) {
         let Rays { origin: o, dir: d, t_min, weight: Weight { attenuation: a, factor: f }, pixel, source, parent } =
             *rays;
+        if !mask.any() {
+            return;
+        }
         let before = self.len();
-        let row = [o.x, o.y, o.z, d.x, d.y, d.z, t_min, a.r, a.g, a.b, f.r, f.g, f.b, pixel, source, parent];
-        self.rays.push(mask, row);
+        self.ways.push(mask, [o.x, o.y, o.z, d.x, d.y, d.z, pixel]);
+        self.loads.push(mask, [a.r, a.g, a.b, f.r, f.g, f.b, t_min, source, parent]);
         self.count(kind, self.len() - before);
     }
 
@@ -99,35 +121,46 @@ impl RayQueue {
 
     /// Appends all rays of another queue, which must not be of an earlier kind.
     pub fn append(&mut self, other: &Self) {
-        self.rays.append(&other.rays, 0..other.len());
+        self.ways.append(&other.ways, 0..other.len());
+        self.loads.append(&other.loads, 0..other.loads.len());
         (self.camera, self.mirror) = (self.camera + other.camera, self.mirror + other.mirror);
     }
 
     /// Appends one ray of another queue.
     pub fn copy_row(&mut self, from: &Self, row: usize) {
-        self.rays.append(&from.rays, row..row + 1);
+        self.ways.append(&from.ways, row..row + 1);
+        if from.camera == 0 {
+            self.loads.append(&from.loads, row..row + 1);
+        }
         self.count(from.kind(row), 1);
+    }
+
+    #[inline(always)]
+    fn load<L: Lanes>(&self, start: usize) -> Load<L> {
+        if self.camera > 0 {
+            let white = Rgb::gray(1.0).splat();
+            let weight = Weight { attenuation: white, factor: white };
+            return Load { weight, t_min: L::splat(T_MIN), source: L::splat(-1.0), parent: L::splat(0.0) };
+        }
+        let [r, g, b, fr, fg, fb, t_min, source, parent] = self.loads.group(0, start);
+        Load { weight: Weight { attenuation: Rgb::new(r, g, b), factor: Rgb::new(fr, fg, fb) }, t_min, source, parent }
     }
 
     /// Rays from a row on, one in each lane; behind the last one they are of no meaning.
     #[inline(always)]
     pub fn rays<L: Lanes>(&self, start: usize) -> Rays<L> {
-        let [x, y, z, dx, dy, dz, t_min] = self.rays.group(ORIGIN, start);
-        let [r, g, b, fr, fg, fb] = self.rays.group(ATTENUATION, start);
-        let [pixel, source, parent] = self.rays.group(PIXEL, start);
-        let weight = Weight { attenuation: Rgb::new(r, g, b), factor: Rgb::new(fr, fg, fb) };
+        let [x, y, z, dx, dy, dz, pixel] = self.ways.group(0, start);
+        let Load { weight, t_min, source, parent } = self.load(start);
         Rays { origin: Vec3::new(x, y, z), dir: Vec3::new(dx, dy, dz), t_min, weight, pixel, source, parent }
     }
 
     /// Puts up to 64 rays from a row on into a packet, and says which places they take.
     #[inline(always)]
-    pub fn fill<L: Lanes>(&self, packet: &mut Packet, first: usize) -> u64 {
+    pub fn fill<L: Lanes>(&self, packet: &mut Packet, first: usize, shear: bool) -> u64 {
         let count = (self.len() - first).min(PACKET);
         for start in (0..count).step_by(L::WIDTH) {
-            let [x, y, z, dx, dy, dz, t_min] = self.rays.group(ORIGIN, first + start);
-            let source = self.rays.lanes(SOURCE, first + start);
-            let t_max = L::splat(f64::INFINITY);
-            packet.set(start, Vec3::new(x, y, z), Vec3::new(dx, dy, dz), t_min, t_max, source);
+            let Rays { origin, dir, t_min, source, .. } = self.rays::<L>(first + start);
+            packet.set(start, origin, dir, t_min, L::splat(f64::INFINITY), source, shear);
         }
         u64::MAX >> (PACKET - count)
     }
@@ -150,14 +183,14 @@ impl RayQueue {
     /// The pixels of the rays.
     #[inline(always)]
     pub fn pixels(&self) -> impl Iterator<Item = usize> + '_ {
-        self.rays.column(PIXEL)[..self.len()].iter().map(|&pixel| pixel as usize)
+        self.ways.column(PIXEL).iter().map(|&pixel| pixel as usize)
     }
 
     pub fn pixel(&self, row: usize) -> usize {
-        self.rays.at(PIXEL, row) as usize
+        self.ways.at(PIXEL, row) as usize
     }
 
     pub fn parent(&self, row: usize) -> usize {
-        self.rays.at(PARENT, row) as usize
+        if self.camera > 0 { 0 } else { self.loads.at(PARENT, row) as usize }
     }
 }

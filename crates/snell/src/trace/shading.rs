@@ -53,12 +53,13 @@ impl ShadowRays {
                 self.rays.push(faces, [row, p.x, p.y, p.z, wi.x, wi.y, wi.z, distance, source]);
             }
         }
+        let shear = world.tree.has_triangles();
         for first in (0..self.rays.len()).step_by(PACKET) {
             let count = (self.rays.len() - first).min(PACKET);
             for start in (0..count).step_by(L::WIDTH) {
                 let [x, y, z, dx, dy, dz, distance] = self.rays.group::<L, 7>(ORIGIN, first + start);
                 let source = self.rays.lanes(SOURCE, first + start);
-                packet.set(start, Vec3::new(x, y, z), Vec3::new(dx, dy, dz), L::splat(T_MIN), distance, source);
+                packet.set(start, Vec3::new(x, y, z), Vec3::new(dx, dy, dz), L::splat(T_MIN), distance, source, shear);
             }
             let mut blocked = world.tree.intersect::<L, true>(packet, u64::MAX >> (PACKET - count));
             while blocked != 0 {

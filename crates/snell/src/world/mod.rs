@@ -8,7 +8,7 @@ use surface::FLAT;
 pub use surface::NO_PRIMITIVE;
 
 use crate::film::Rgb;
-use crate::geometry::bvh::{Bvh, Quality, Shapes};
+use crate::geometry::bvh::{Bvh, Quality, Shapes, TreeStatistics};
 use crate::geometry::mesh::MAX_SMOOTHED_VALENCE;
 use crate::geometry::{Affine, Bounds, Sphere, TriangleMesh, Vec3, triangle};
 use crate::scene::{
@@ -74,11 +74,20 @@ struct Triangles {
 }
 
 impl World {
-    /// Compiles a scene.
+    /// Compiles a scene, with all processors.
     ///
     /// # Errors
     /// Everything that is wrong with the scene. A mesh that names a file must have been read before.
     pub fn new(scene: &Scene) -> Result<Self, Vec<Problem>> {
+        Self::build(scene, Quality::default(), 0)
+    }
+
+    /// Compiles a scene with a tree of this quality, on so many threads, 0 for as many as the machine has cores. Neither
+    /// changes the picture.
+    ///
+    /// # Errors
+    /// As [`World::new`].
+    pub fn build(scene: &Scene, quality: Quality, threads: usize) -> Result<Self, Vec<Problem>> {
         let warnings = validate(scene)?;
         let mut world = Self {
             render: scene.render.clone(),
@@ -115,7 +124,7 @@ impl World {
         if world.corner_normals.is_empty() {
             world.corner_normals_of = Vec::new();
         }
-        world.build_tree(&triangles);
+        world.build_tree(&triangles, quality, threads);
         Ok(world)
     }
 
@@ -137,13 +146,19 @@ impl World {
         self.objects[..after].last().filter(|o| primitive - o.first < o.count)
     }
 
+    /// What the tree over the primitives is made of.
+    pub fn tree(&self) -> TreeStatistics {
+        self.tree.statistics()
+    }
+
     /// Bytes of geometry and tree.
     pub fn memory(&self) -> usize {
         size_of_val(self.spheres.as_slice())
             + size_of_val(self.corner_normals.as_slice())
             + size_of_val(self.corner_normals_of.as_slice())
             + size_of_val(self.material_of.as_slice())
-            + self.tree.memory()
+            + self.tree.statistics().node_bytes
+            + self.tree.statistics().primitive_bytes
     }
 
     fn add_mesh(
@@ -237,13 +252,13 @@ impl World {
         }
     }
 
-    fn build_tree(&mut self, triangles: &Triangles) {
+    fn build_tree(&mut self, triangles: &Triangles, quality: Quality, threads: usize) {
         let Triangles { vertices, faces } = triangles;
         let shapes = Shapes { spheres: &self.spheres, vertices, faces };
         // Rays start on surfaces or on the image plane; no ray origin is farther from a primitive than this.
         let corners = Bounds::of(self.camera.corners());
         let everything = (0..shapes.count()).map(|i| shapes.bounds(i)).fold(corners, Bounds::union);
-        self.tree = Bvh::build(&shapes, everything.diagonal(), Quality::default(), 0);
+        self.tree = Bvh::build(&shapes, everything.diagonal(), quality, threads);
     }
 }
 

@@ -37,6 +37,22 @@ const MARGIN: f64 = 1.0 / (1u64 << 48) as f64;
 pub struct Bvh {
     nodes: Vec<Node>,
     primitives: Primitives,
+    depth: usize,
+}
+
+/// What a tree is made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TreeStatistics {
+    /// Nodes of eight boxes.
+    pub nodes: usize,
+    /// Leaves of up to eight primitives.
+    pub leaves: usize,
+    /// Nodes on the longest way down.
+    pub depth: usize,
+    /// Bytes of the nodes.
+    pub node_bytes: usize,
+    /// Bytes of the primitives, which stand in the leaves.
+    pub primitive_bytes: usize,
 }
 
 /// Boxes of a node that are met, as bits, from the farthest to the nearest: `near` says where they are entered.
@@ -75,7 +91,7 @@ impl Bvh {
         let padded = |i| OuterBox::around(&shapes.bounds(i), reach * MARGIN);
         let mut tree = build::build(shapes.count(), padded, quality, threads);
         let primitives = Primitives::new(shapes, &mut tree);
-        Self { nodes: tree.nodes, primitives }
+        Self { nodes: tree.nodes, primitives, depth: tree.depth }
     }
 
     /// Fetches what is in a box while others are visited first: a tree of any size does not fit into a cache.
@@ -88,14 +104,26 @@ impl Bvh {
         }
     }
 
+    /// Are there any triangles? Otherwise rays need no shears.
+    pub(crate) fn has_triangles(&self) -> bool {
+        self.primitives.has_triangles()
+    }
+
     /// The corners of a triangle, by its id.
     pub fn corners(&self, id: usize) -> [Vec3; 3] {
         self.primitives.corners(id)
     }
 
-    /// Bytes of the tree and its primitives.
-    pub fn memory(&self) -> usize {
-        size_of_val(self.nodes.as_slice()) + self.primitives.memory()
+    /// Nodes, leaves, depth, bytes.
+    pub fn statistics(&self) -> TreeStatistics {
+        let is_leaf = |child: &&Child| matches!(child.kind(), Kind::Block(_));
+        TreeStatistics {
+            nodes: self.nodes.len(),
+            leaves: self.nodes.iter().flat_map(|node| &node.child).filter(is_leaf).count(),
+            depth: self.depth,
+            node_bytes: size_of_val(self.nodes.as_slice()),
+            primitive_bytes: self.primitives.memory(),
+        }
     }
 
     /// The same primitives in boxes that hold everything: every ray meets every primitive. The oracle of the tests.
@@ -154,7 +182,7 @@ mod tests {
     ) -> (u64, f64, f64) {
         let mut packet = Packet::default();
         for start in (0..PACKET).step_by(L::WIDTH) {
-            packet.set(start, origin.splat(), dir.splat(), L::splat(0.0), L::splat(t_max), L::splat(-1.0));
+            packet.set(start, origin.splat(), dir.splat(), L::splat(0.0), L::splat(t_max), L::splat(-1.0), true);
         }
         let rays = u64::MAX >> (PACKET - copies);
         let hit = tree.intersect::<L, ANY>(&mut packet, rays);

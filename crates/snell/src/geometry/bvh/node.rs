@@ -100,6 +100,12 @@ impl Node {
     pub const EMPTY: Self =
         Self { min: [[f32::INFINITY; WIDTH]; 3], max: [[f32::NEG_INFINITY; WIDTH]; 3], child: [Child::NOTHING; WIDTH] };
 
+    /// The places that are used, as bits.
+    #[inline(always)]
+    pub fn used(&self) -> u32 {
+        (0..WIDTH).fold(0, |bits, place| bits | u32::from(self.child[place] != Child::NOTHING) << place)
+    }
+
     /// One side of the boxes along an axis: 0 the smallest coordinates, 1 the largest.
     #[inline(always)]
     pub fn side(&self, axis: usize, side: usize) -> &[f32; WIDTH] {

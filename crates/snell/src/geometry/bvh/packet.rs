@@ -8,8 +8,8 @@
 
 use super::node::{self, Block, Child, Kind, Node};
 use super::primitives::{SPHERE, TRIANGLE};
-use super::{Bvh, farthest_first};
 use super::single::Walker;
+use super::{Bvh, farthest_first};
 use crate::geometry::ray::{Shear, axes, inverse};
 use crate::geometry::{Vec3, sphere, triangle};
 use crate::lanes::{Lanes, Mask};
@@ -104,15 +104,24 @@ impl<L: Lanes> Iterator for Groups<L> {
 }
 
 impl Packet {
-    /// Sets the rays of one group of lanes.
+    /// Sets the rays of one group of lanes, with their shears if they are wanted, which only triangles need.
     #[inline(always)]
-    pub fn set<L: Lanes>(&mut self, start: usize, origin: Vec3<L>, dir: Vec3<L>, t_min: L, t_max: L, source: L) {
+    #[allow(clippy::too_many_arguments, reason = "a ray in lanes is many numbers, and nobody else wants them together")]
+    pub fn set<L: Lanes>(
+        &mut self,
+        start: usize,
+        origin: Vec3<L>,
+        dir: Vec3<L>,
+        t_min: L,
+        t_max: L,
+        source: L,
+        shear: bool,
+    ) {
         let (x, y, z) = (dir.x, dir.y, dir.z);
         let (ax, ay, az) = (x.max(-x), y.max(-y), z.max(-z));
         let along_z = az.ge(ax) & az.ge(ay);
         let along_y = !along_z & ay.ge(ax);
         let along_x = !along_z & !along_y;
-        let main = L::select(along_x, x, L::select(along_y, y, z));
         let keep = !(u64::MAX >> (SIZE - L::WIDTH) << start);
         let (origins, dirs): ([L; 3], [L; 3]) = (origin.into(), dir.into());
         let inverses = [inverse(x), inverse(y), inverse(z)];
@@ -125,9 +134,12 @@ impl Packet {
             self.negative[axis] = self.negative[axis] & keep | u64::from(negative.bits()) << start;
             self.main[axis] = self.main[axis] & keep | u64::from(mains[axis].bits()) << start;
         }
-        // The order of the axes as in `ray::axes`.
-        (-(L::select(along_x, y, x) / main)).store(&mut self.shear[0][start..]);
-        (-(L::select(along_z, y, z) / main)).store(&mut self.shear[1][start..]);
+        if shear {
+            // The order of the axes as in `ray::axes`.
+            let main = L::select(along_x, x, L::select(along_y, y, z));
+            (-(L::select(along_x, y, x) / main)).store(&mut self.shear[0][start..]);
+            (-(L::select(along_z, y, z) / main)).store(&mut self.shear[1][start..]);
+        }
         t_min.store(&mut self.t_min[start..]);
         t_max.store(&mut self.t[start..]);
         source.store(&mut self.source[start..]);
@@ -150,7 +162,7 @@ impl Packet {
 
     /// A vector of one ray in every lane.
     #[inline(always)]
-    pub(super) fn one<L: Lanes>(&self, columns: &[Column; 3], ray: usize, [x, y, z]: [usize; 3]) -> Vec3<L> {
+    pub(super) fn one<L: Lanes>(columns: &[Column; 3], ray: usize, [x, y, z]: [usize; 3]) -> Vec3<L> {
         Vec3::new(L::splat(columns[x][ray]), L::splat(columns[y][ray]), L::splat(columns[z][ray]))
     }
 
@@ -265,7 +277,8 @@ impl Bvh {
     /// Takes rays that go the same way down the tree together.
     #[inline(always)]
     fn descend<L: Lanes, const ANY: bool>(&self, packet: &mut Packet, all: u64, octant: &Octant) -> u64 {
-        let beam = Beam::new::<L>(packet, all, octant.side);
+        // A single node has nothing to leave out.
+        let beam = (self.nodes.len() > 1).then(|| Beam::new::<L>(packet, all, octant.side));
         let mut farthest = packet.farthest::<L>(all);
         let (mut near, mut keys) = ([0.0; node::WIDTH], [0; node::WIDTH]);
         let (mut hit, mut rays, mut child) = (0, all, Child::ROOT);
@@ -283,7 +296,10 @@ impl Bvh {
                 }
                 Kind::Node(number) => {
                     let node = &self.nodes[number as usize];
-                    let met = beam.meet::<L>(node, farthest, &mut near);
+                    let met = match &beam {
+                        Some(beam) => beam.meet::<L>(node, farthest, &mut near),
+                        None => node.used(),
+                    };
                     let count = farthest_first(met, &near, &mut keys);
                     for &key in &keys[..count] {
                         let slot = key as usize & 7;
@@ -316,12 +332,7 @@ impl Bvh {
 
     /// Lets some rays go on alone from a node.
     #[inline(always)]
-    fn follow_each<L: Lanes, const ANY: bool>(
-        &self,
-        packet: &mut Packet,
-        rays: u64,
-        from: Child,
-    ) -> u64 {
+    fn follow_each<L: Lanes, const ANY: bool>(&self, packet: &mut Packet, rays: u64, from: Child) -> u64 {
         let mut walkers = std::mem::take(&mut packet.walkers);
         let hit = self.follow::<L, ANY>(packet, rays, from, &mut walkers);
         packet.walkers = walkers;

@@ -93,6 +93,10 @@ impl Primitives {
         [0, 3, 6].map(|first| Vec3::new(number(first), number(first + 1), number(first + 2)))
     }
 
+    pub fn has_triangles(&self) -> bool {
+        !self.places.is_empty()
+    }
+
     pub fn memory(&self) -> usize {
         size_of_val(self.numbers.as_slice()) + size_of_val(self.places.as_slice())
     }

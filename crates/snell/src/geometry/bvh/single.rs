@@ -117,7 +117,7 @@ impl Bvh {
         let mut found = false;
         let numbers = &self.primitives.numbers[at..];
         if spheres > 0 {
-            let (origin, dir) = (packet.one(&packet.origin, ray, [0, 1, 2]), packet.one(&packet.dir, ray, [0, 1, 2]));
+            let (origin, dir) = (Packet::one(&packet.origin, ray, [0, 1, 2]), Packet::one(&packet.dir, ray, [0, 1, 2]));
             for start in (0..spheres).step_by(L::WIDTH) {
                 let center = vectors(&numbers[start..], spheres, [0, 1, 2]);
                 let radius = L::load(&numbers[3 * spheres + start..]);
@@ -128,7 +128,7 @@ impl Bvh {
         }
         if triangles > 0 {
             let k = octant.axes;
-            let origin = packet.one(&packet.origin, ray, k);
+            let origin = Packet::one(&packet.origin, ray, k);
             let (x, y) = (L::splat(packet.shear[0][ray]), L::splat(packet.shear[1][ray]));
             let shear = Shear(Vec3::new(x, y, L::splat(packet.inv_dir[k[2]][ray])));
             let numbers = &numbers[SPHERE * spheres..];
@@ -165,8 +165,8 @@ impl<L: Lanes> Boxes<L> {
     #[inline(always)]
     fn new(packet: &Packet, ray: usize, octant: &Octant) -> Self {
         Self {
-            origin: packet.one(&packet.origin, ray, [0, 1, 2]).into(),
-            inv_dir: packet.one(&packet.inv_dir, ray, [0, 1, 2]).into(),
+            origin: Packet::one(&packet.origin, ray, [0, 1, 2]).into(),
+            inv_dir: Packet::one(&packet.inv_dir, ray, [0, 1, 2]).into(),
             side: octant.side,
             t_min: L::splat(packet.t_min[ray]),
         }

@@ -3,7 +3,7 @@
 
 use super::*;
 use crate::geometry::bvh::node::{Kind, WIDTH};
-use crate::geometry::{Bounds, Vec3, sphere};
+use crate::geometry::{Bounds, Sphere, Vec3};
 
 /// The knot of `n` rings of `m` quads, on a floor of two triangles: 2nm + 2 boxes.
 pub(super) fn knot(n: usize, m: usize) -> Vec<OuterBox> {
@@ -45,7 +45,7 @@ pub(super) fn knot(n: usize, m: usize) -> Vec<OuterBox> {
 /// 1987): 1 + 9 + … + 9^levels boxes, and a floor.
 pub(super) fn flake(levels: usize) -> Vec<OuterBox> {
     fn grow(level: usize, at: Vec3, radius: f64, up: Vec3, boxes: &mut Vec<OuterBox>) {
-        boxes.push(OuterBox::around(&sphere::bounds(at, radius), 1e-13));
+        boxes.push(OuterBox::around(&Sphere { center: at, radius }.bounds(), 1e-13));
         if level == 0 {
             return;
         }
@@ -107,7 +107,7 @@ pub(super) fn cost(tree: &Tree) -> f64 {
             match node.child[place].kind() {
                 Kind::Node(_) => all += collapse::NODE_COST * area(min, max),
                 Kind::Leaf(leaf) => all += collapse::leaf_cost(tree.leaves[leaf as usize].count, area(min, max)),
-                Kind::Nothing => continue,
+                Kind::Nothing | Kind::Block(_) => continue,
             }
             if index == 0 {
                 for i in 0..3 {

@@ -36,7 +36,7 @@ fn check(tree: &Tree, boxes: &[OuterBox]) {
         for i in 0..WIDTH {
             let bounds = place(node, i);
             match node.child[i].kind() {
-                Kind::Nothing => {
+                Kind::Nothing | Kind::Block(_) => {
                     assert!(i >= used, "an unused place before a used one");
                     assert_eq!(bounds, OuterBox { min: [f32::INFINITY; 3], max: [f32::NEG_INFINITY; 3] });
                 }
@@ -72,7 +72,7 @@ fn bits(tree: &Tree) -> Vec<u32> {
         let children = node.child.iter().map(|child| match child.kind() {
             Kind::Node(n) => n,
             Kind::Leaf(n) => !n,
-            Kind::Nothing => 0,
+            Kind::Nothing | Kind::Block(_) => 0,
         });
         numbers.chain(children)
     });
