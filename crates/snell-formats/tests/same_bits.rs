@@ -4,12 +4,12 @@
 
 use snell::film::{Crop, Film, Rgb};
 use snell::render::{LaneWidth, Options, render, trace_pixel};
-use snell::scene::{Integrator, Scene};
+use snell::scene::{Integrator, Scene, Transform};
 use snell::world::World;
 use snell_formats::scene_file::{Syntax, parse};
 use snell_formats::{LoadOptions, Source, disk, load};
 use snell_test_scenes::{
-    all, at_size, crowd, far_away, first_light, hall_of_mirrors, hostile, lecture, matrix, tiny_and_huge,
+    all, at_size, crowd, far_away, first_light, hall_of_mirrors, hostile, instances, lecture, matrix, tiny_and_huge,
 };
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -84,6 +84,37 @@ fn the_bits_are_those_of_the_first_light() {
     let film = |scene: Scene| picture(&World::new(&scene).unwrap(), &Options::default());
     let hashes = first_light().into_iter().map(|(_, scene)| hash(&film(scene)));
     assert_eq!(disk::sha256(hashes), "3ec8794c027227c2bd3e6ecbd8642d53f4842fa7493a87387f1a9fe00c26095b");
+}
+
+#[test]
+fn a_mesh_held_once_looks_as_if_written_out_in_all_its_places() {
+    let worlds = [true, false].map(|held_once| World::new(&instances(0.0, held_once)).unwrap());
+    assert_eq!(worlds[0].primitive_count(), worlds[1].primitive_count());
+    assert!(8 * worlds[0].memory() < worlds[1].memory(), "held twice for twenty places each: {:?}", worlds[0].tree());
+    let films = worlds.each_ref().map(|world| picture(world, &Options::default()));
+    assert!(films[0].pixels.iter().any(|p| p.mean() > 0.1), "a black picture proves nothing");
+    // The same but for roundings of hits by 1e-13, which mirrors multiply, so that a pixel may see something else.
+    let close = |a: Rgb, b: Rgb| [a.r - b.r, a.g - b.g, a.b - b.b].iter().all(|d| d.abs() < 1e-9);
+    let others = films[0].pixels.iter().zip(&films[1].pixels).filter(|&(&a, &b)| !close(a, b)).count();
+    assert!(others <= 2, "{others} of 576 pixels differ");
+    let names = |world: &World| world.objects.iter().map(|o| (o.first, o.count)).collect::<Vec<_>>();
+    assert_eq!(names(&worlds[0]), names(&worlds[1]));
+}
+
+#[test]
+fn an_impossible_place_is_a_problem_with_its_name() {
+    let place = |step: Transform| {
+        let mut scene = instances(0.0, true);
+        scene.meshes[1].instances[3].push(step);
+        let problems = World::new(&scene).unwrap_err();
+        assert_eq!(problems.len(), 1);
+        problems[0].to_string()
+    };
+    let flat = place(Transform::Scale([1.0, 0.0, 1.0]));
+    assert!(flat.contains("mesh[1].instances") && flat.contains("scaled by 0"), "{flat}");
+    assert!(place(Transform::Move([1e16, 0.0, 0.0])).contains("mesh[1].instances"));
+    let axis = place(Transform::Rotate { axis: [0.0; 3], degrees: 10.0 });
+    assert!(axis.contains("axis"), "{axis}");
 }
 
 #[test]

@@ -7,11 +7,13 @@
 mod build;
 mod crowd;
 mod hostile;
+mod instances;
 pub mod matrix;
 
 pub use build::{at_size, lecture};
 pub use crowd::{crowd, far_away, hall_of_mirrors};
 pub use hostile::tiny_and_huge;
+pub use instances::instances;
 
 use snell::scene::{Integrator, Scene};
 use snell_formats::builtin;
@@ -38,6 +40,7 @@ pub fn all() -> Vec<Named> {
     scenes.extend(hostile());
     // With this seed a tree without margins around its boxes loses hits at the origin already.
     scenes.extend([0.0, 4096.0, -3e8].map(|offset| (format!("far away by {offset}"), far_away(offset, 0, true))));
+    scenes.extend([0.0, 1e6].map(|offset| (format!("instances away by {offset}"), instances(offset, true))));
     scenes.push(("hall of mirrors".to_owned(), hall_of_mirrors(5)));
     scenes
 }

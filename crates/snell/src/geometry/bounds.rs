@@ -32,6 +32,21 @@ impl Bounds {
         }
     }
 
+    /// The eight corners.
+    pub fn corners(&self) -> [Vec3; 8] {
+        let (a, b) = (self.min, self.max);
+        std::array::from_fn(|i| {
+            let pick = |bit: usize, low: f64, high: f64| if i >> bit & 1 == 0 { low } else { high };
+            Vec3::new(pick(0, a.x, b.x), pick(1, a.y, b.y), pick(2, a.z, b.z))
+        })
+    }
+
+    /// The largest coordinate, whatever its sign.
+    pub fn farthest(&self) -> f64 {
+        let numbers = [self.min.x, self.min.y, self.min.z, self.max.x, self.max.y, self.max.z];
+        numbers.into_iter().map(f64::abs).fold(0.0, f64::max)
+    }
+
     /// Length of the diagonal; 0 for the empty box.
     pub fn diagonal(&self) -> f64 {
         if self.min.x > self.max.x { 0.0 } else { (self.max - self.min).length() }

@@ -1,6 +1,7 @@
 //! Affine maps: rotate, scale, move, one after the other.
 
 use super::Vec3;
+use crate::lanes::Lanes;
 use crate::lanes::elementary::sin_cos_degrees;
 
 /// `p ↦ M·p + t`.
@@ -58,8 +59,42 @@ impl Affine {
     }
 
     /// The image of a point.
-    pub fn apply(&self, p: Vec3) -> Vec3 {
-        Vec3::new(self.rows[0].dot(p), self.rows[1].dot(p), self.rows[2].dot(p)) + self.offset
+    #[inline(always)]
+    pub fn apply<L: Lanes>(&self, p: Vec3<L>) -> Vec3<L> {
+        self.turn(p) + self.offset.splat()
+    }
+
+    /// The image of a direction: without the offset, and of another length.
+    #[inline(always)]
+    pub fn turn<L: Lanes>(&self, v: Vec3<L>) -> Vec3<L> {
+        let [x, y, z] = self.rows;
+        Vec3::new(x.splat().dot(v), y.splat().dot(v), z.splat().dot(v))
+    }
+
+    /// The image of a normal under the inverse of this map, of another length: across the image of the surface, and on the
+    /// side from which its corners are still seen counter-clockwise, which a mirror swaps: `±Mᵀ·n`.
+    pub fn turn_normal_back(&self, n: Vec3) -> Vec3 {
+        let [x, y, z] = self.rows;
+        let across = x * n.x + y * n.y + z * n.z;
+        if x.dot(y.cross(z)) < 0.0 { -across } else { across }
+    }
+
+    /// The map that undoes this one, by cofactors; `None` where there is none, or none with finite numbers.
+    pub fn inverse(&self) -> Option<Self> {
+        let [x, y, z] = self.rows;
+        let columns = [y.cross(z), z.cross(x), x.cross(y)];
+        let scale = 1.0 / x.dot(columns[0]);
+        let rows = [0, 1, 2]
+            .map(|i| Vec3::new(columns[0].component(i), columns[1].component(i), columns[2].component(i)) * scale);
+        let linear = Self { rows, offset: Vec3::default() };
+        let inverse = Self { offset: -linear.apply(self.offset), ..linear };
+        let numbers = rows.iter().chain([&inverse.offset]);
+        (scale != 0.0 && numbers.copied().all(Vec3::is_finite)).then_some(inverse)
+    }
+
+    /// The Frobenius norm of the map without its offset: no vector gets longer by more than this factor.
+    pub fn norm(&self) -> f64 {
+        self.rows.iter().map(|row| row.dot(*row)).sum::<f64>().sqrt()
     }
 }
 
@@ -84,6 +119,29 @@ mod tests {
         assert_eq!(map.apply(Vec3::new(0.0, 1.0, 0.0)), Vec3::new(10.0, 0.0, 4.0));
         assert_eq!(map.apply(Vec3::new(1.0, 0.0, 1.0)), Vec3::new(12.0, -3.0, 0.0));
         assert_eq!(Affine::rotation(Vec3::default(), 10.0), None);
+    }
+
+    #[test]
+    fn the_inverse_undoes() {
+        let map = Affine::rotation(Vec3::new(1.0, 2.0, 3.0), 50.0)
+            .unwrap()
+            .then(Affine::scaling(Vec3::new(2.0, -0.5, 4.0)))
+            .then(Affine::translation(Vec3::new(10.0, 20.0, -3.0)));
+        let inverse = map.inverse().unwrap();
+        let p = Vec3::new(1.0, -2.0, 0.5);
+        assert!(
+            (inverse.apply(map.apply(p)) - p).length() < 1e-14,
+            "a dozen roundings of numbers up to 30, scaled by 2"
+        );
+        // A tangent and a normal stay across each other.
+        let (tangent, normal) = (Vec3::new(1.0, 1.0, 0.0), Vec3::new(1.0, -1.0, 3.0));
+        assert!(map.turn(tangent).dot(inverse.turn_normal_back(normal)).abs() < 1e-14);
+        // The map is a mirror: by the right-hand rule on the images of two tangents.
+        let other = Vec3::new(3.0, 0.0, -1.0);
+        let rule = map.turn(tangent).cross(map.turn(other));
+        assert!(rule.dot(inverse.turn_normal_back(tangent.cross(other))) > 0.0);
+        assert_eq!(Affine::scaling(Vec3::new(1.0, 0.0, 1.0)).inverse(), None);
+        assert!(map.norm() >= 4.0);
     }
 
     #[test]

@@ -49,6 +49,11 @@ pub struct Mesh {
     /// Steps that put the model in its place, one after the other.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub transform: Vec<Transform>,
+    /// Places where the mesh stands, each a list of steps after those of `transform`; empty for once, where `transform` puts
+    /// it. However many places, its triangles are held once. Only for programs: not in files.
+    #[serde(skip)]
+    #[schemars(skip)]
+    pub instances: Vec<Vec<Transform>>,
     /// The triangles themselves, once the file has been read; `None` before.
     #[serde(skip)]
     #[schemars(skip)]

@@ -1,6 +1,6 @@
 //! What can be wrong with a scene, and where.
 
-use super::{Scene, Warning, WarningCode};
+use super::{Scene, Transform, Warning, WarningCode};
 use crate::film::Rgb;
 use crate::geometry::Vec3;
 use std::fmt;
@@ -242,6 +242,16 @@ fn known_material(scene: &Scene, found: &mut Findings, at: Vec<Step>, name: &str
     }
 }
 
+fn transform_step(found: &mut Findings, at: Vec<Step>, step: &Transform) {
+    let fine = match step {
+        Transform::Rotate { axis, degrees } => found.numbers(&at, axis) && found.number(at.clone(), *degrees),
+        Transform::Scale(v) | Transform::Move(v) => found.numbers(&at, v),
+    };
+    if fine && step.map().is_none() {
+        found.problem(at, "a rotation needs an axis, read [0, 0, 0]", "[0, 1, 0] turns about the y axis");
+    }
+}
+
 fn meshes(scene: &Scene, found: &mut Findings) {
     for (i, mesh) in scene.meshes.iter().enumerate() {
         let at = |key: &str| place!["mesh", i, key];
@@ -253,15 +263,11 @@ fn meshes(scene: &Scene, found: &mut Findings) {
             known_material(scene, found, place!["mesh", i, "materials", slot.as_str()], name);
         }
         for (k, step) in mesh.transform.iter().enumerate() {
-            let at = place!["mesh", i, "transform", k];
-            let fine = match step {
-                super::Transform::Rotate { axis, degrees } => {
-                    found.numbers(&at, axis) && found.number(at.clone(), *degrees)
-                }
-                super::Transform::Scale(v) | super::Transform::Move(v) => found.numbers(&at, v),
-            };
-            if fine && step.map().is_none() {
-                found.problem(at, "a rotation needs an axis, read [0, 0, 0]", "[0, 1, 0] turns about the y axis");
+            transform_step(found, place!["mesh", i, "transform", k], step);
+        }
+        for (n, steps) in mesh.instances.iter().enumerate() {
+            for (k, step) in steps.iter().enumerate() {
+                transform_step(found, place!["mesh", i, "instances", n, k], step);
             }
         }
         let written_out = !mesh.vertices.is_empty() || !mesh.faces.is_empty();

@@ -4,15 +4,15 @@ mod camera;
 mod surface;
 
 pub use camera::CameraFrame;
-use surface::FLAT;
 pub use surface::NO_PRIMITIVE;
+use surface::{FLAT, Placement, Surfaces};
 
 use crate::film::Rgb;
-use crate::geometry::bvh::{Bvh, Quality, Shapes, TreeStatistics};
+use crate::geometry::bvh::{Bvh, Instance, Quality, Shapes, TreeStatistics};
 use crate::geometry::mesh::MAX_SMOOTHED_VALENCE;
 use crate::geometry::{Affine, Bounds, Sphere, TriangleMesh, Vec3, triangle};
 use crate::scene::{
-    Integrator, LARGEST_NUMBER, Material, Mesh, Problem, Render, Scene, Step, Warning, WarningCode, validate,
+    Integrator, LARGEST_NUMBER, Material, Mesh, Problem, Render, Scene, Step, Transform, Warning, WarningCode, validate,
 };
 use indexmap::IndexMap;
 
@@ -55,22 +55,32 @@ pub struct World {
     pub(crate) eta_outside: f64,
     pub(crate) lights: Vec<LightSource>,
     pub(crate) materials: Vec<Material>,
-    /// Material of each primitive.
-    material_of: Vec<u32>,
     pub(crate) spheres: Vec<Sphere>,
-    /// Normals at the corners of the triangles that are smooth.
-    corner_normals: Vec<[Vec3; 3]>,
-    /// For each triangle where its corner normals are, `FLAT` if it has none; empty if no triangle has any.
-    corner_normals_of: Vec<u32>,
-    /// The tree, with the triangles in its leaves.
+    /// Of the primitives that stand for themselves.
+    surfaces: Surfaces,
+    /// Of the meshes that stand in several places, and these places in the order of their ids.
+    models: Vec<Surfaces>,
+    placements: Vec<Placement>,
+    /// Is no triangle smooth?
+    all_flat: bool,
+    /// The tree, with the triangles in its leaves and the trees of the models.
     pub(crate) tree: Bvh,
 }
 
-/// Triangles on their way into the tree.
+/// Triangles on their way into a tree.
 #[derive(Default)]
 struct Triangles {
     vertices: Vec<Vec3>,
     faces: Vec<[u32; 3]>,
+}
+
+/// All that trees are to be built of.
+#[derive(Default)]
+struct Parts {
+    triangles: Triangles,
+    models: Vec<Triangles>,
+    /// The meshes to be placed, when all ids before them are known: scene index, name, model, map.
+    placed: Vec<(usize, String, usize, Affine)>,
 }
 
 impl World {
@@ -98,10 +108,11 @@ impl World {
             eta_outside: scene.eta_outside,
             lights: scene.lights.iter().map(light_source).collect(),
             materials: scene.materials.values().cloned().collect(),
-            material_of: Vec::new(),
             spheres: Vec::new(),
-            corner_normals: Vec::new(),
-            corner_normals_of: Vec::new(),
+            surfaces: Surfaces::default(),
+            models: Vec::new(),
+            placements: Vec::new(),
+            all_flat: true,
             tree: Bvh::default(),
         };
         if !world.camera.has_image_plane() {
@@ -115,16 +126,20 @@ impl World {
             let name = s.name.clone().unwrap_or_else(|| format!("sphere {}", i + 1));
             world.objects.push(Object { name, first: i as u32, count: 1 });
             world.spheres.push(Sphere { center: s.center.into(), radius: s.radius });
-            world.material_of.push(material_ids.get(s.material.as_str()).copied().unwrap_or(0));
+            world.surfaces.material_of.push(material_ids.get(s.material.as_str()).copied().unwrap_or(0));
         }
-        let mut triangles = Triangles::default();
+        world.surfaces.corner_normals_of.resize(world.spheres.len(), FLAT);
+        let mut parts = Parts::default();
         for (i, mesh) in scene.meshes.iter().enumerate() {
-            world.add_mesh(i, mesh, &material_ids, &mut triangles).map_err(|problem| vec![problem])?;
+            world.add_mesh(i, mesh, &material_ids, &mut parts).map_err(|problem| vec![problem])?;
         }
-        if world.corner_normals.is_empty() {
-            world.corner_normals_of = Vec::new();
+        for surfaces in world.models.iter_mut().chain([&mut world.surfaces]) {
+            world.all_flat &= surfaces.corner_normals.is_empty();
+            if surfaces.corner_normals.is_empty() {
+                surfaces.corner_normals_of = Vec::new();
+            }
         }
-        world.build_tree(&triangles, quality, threads);
+        world.build_tree(&parts, quality, threads).map_err(|problem| vec![problem])?;
         Ok(world)
     }
 
@@ -137,7 +152,7 @@ impl World {
 
     /// Number of primitives.
     pub fn primitive_count(&self) -> usize {
-        self.material_of.len()
+        self.objects.last().map_or(0, |object| (object.first + object.count) as usize)
     }
 
     /// The object that a primitive belongs to.
@@ -153,12 +168,9 @@ impl World {
 
     /// Bytes of geometry and tree.
     pub fn memory(&self) -> usize {
-        size_of_val(self.spheres.as_slice())
-            + size_of_val(self.corner_normals.as_slice())
-            + size_of_val(self.corner_normals_of.as_slice())
-            + size_of_val(self.material_of.as_slice())
-            + self.tree.statistics().node_bytes
-            + self.tree.statistics().primitive_bytes
+        let tree = self.tree.statistics();
+        let surfaces: usize = self.models.iter().chain([&self.surfaces]).map(Surfaces::memory).sum();
+        size_of_val(self.spheres.as_slice()) + surfaces + tree.node_bytes + tree.primitive_bytes
     }
 
     fn add_mesh(
@@ -166,7 +178,7 @@ impl World {
         index: usize,
         mesh: &Mesh,
         material_ids: &IndexMap<&str, u32>,
-        triangles: &mut Triangles,
+        parts: &mut Parts,
     ) -> Result<(), Problem> {
         let place = |key: &str| vec![Step::from("mesh"), Step::from(index), Step::from(key)];
         let problem = |key: &str, message: String| Problem { place: place(key), message, help: None };
@@ -183,7 +195,7 @@ impl World {
                 &inline
             }
         };
-        let map = mesh.transform.iter().filter_map(super::scene::Transform::map).fold(Affine::IDENTITY, Affine::then);
+        let map = whole_map(&mesh.transform);
         let placed = source.transformed(&map);
         if let Some(v) = placed.vertices.iter().find(|v| !v.is_finite() || v.length() > LARGEST_NUMBER) {
             let message = format!("a vertex ends up at ({}, {}, {}), beyond 1e15", v.x, v.y, v.z);
@@ -193,7 +205,16 @@ impl World {
 
         let name = mesh.name.clone().or_else(|| mesh.file.clone()).unwrap_or_else(|| format!("mesh {}", index + 1));
         let corner_normals = (mesh.smooth_angle > 0.0).then(|| placed.smooth_normals(mesh.smooth_angle));
-        let (first, base) = (self.primitive_count() as u32, triangles.vertices.len() as u32);
+        let is_model = !mesh.instances.is_empty();
+        let (surfaces, triangles) = if is_model {
+            self.models.push(Surfaces::default());
+            parts.models.push(Triangles::default());
+            (self.models.last_mut(), parts.models.last_mut())
+        } else {
+            (Some(&mut self.surfaces), Some(&mut parts.triangles))
+        };
+        let (Some(surfaces), Some(triangles)) = (surfaces, triangles) else { return Ok(()) };
+        let (first, base) = (surfaces.material_of.len() as u32, triangles.vertices.len() as u32);
         let mut without_area = 0usize;
         let mut used = vec![false; self.materials.len()];
         for (f, face) in placed.faces.iter().enumerate() {
@@ -207,13 +228,21 @@ impl World {
             };
             used[material as usize] = true;
             triangles.faces.push(face.map(|v| v + base));
-            self.material_of.push(material);
-            self.corner_normals_of.push(corner_normals.as_ref().map_or(FLAT, |_| self.corner_normals.len() as u32));
-            self.corner_normals.extend(corner_normals.as_ref().map(|normals| normals[f]));
+            surfaces.material_of.push(material);
+            surfaces
+                .corner_normals_of
+                .push(corner_normals.as_ref().map_or(FLAT, |_| surfaces.corner_normals.len() as u32));
+            surfaces.corner_normals.extend(corner_normals.as_ref().map(|normals| normals[f]));
         }
         triangles.vertices.extend(&placed.vertices);
-        let count = self.primitive_count() as u32 - first;
-        self.objects.push(Object { name: name.clone(), first, count });
+        if is_model {
+            let model = self.models.len() - 1;
+            let maps = mesh.instances.iter().map(|steps| whole_map(steps));
+            parts.placed.extend(maps.map(|map| (index, name.clone(), model, map)));
+        } else {
+            let count = self.surfaces.material_of.len() as u32 - first;
+            self.objects.push(Object { name: name.clone(), first, count });
+        }
         self.warn_about(&name, &place("file"), &placed, mesh, without_area, &used);
         Ok(())
     }
@@ -252,14 +281,62 @@ impl World {
         }
     }
 
-    fn build_tree(&mut self, triangles: &Triangles, quality: Quality, threads: usize) {
-        let Triangles { vertices, faces } = triangles;
-        let shapes = Shapes { spheres: &self.spheres, vertices, faces };
+    fn build_tree(&mut self, parts: &Parts, quality: Quality, threads: usize) -> Result<(), Problem> {
+        let problem = |mesh: usize, message: String| {
+            let place = vec![Step::from("mesh"), Step::from(mesh), Step::from("instances")];
+            Problem { place, message, help: None }
+        };
+        let Triangles { vertices, faces } = &parts.triangles;
+        let shapes = Shapes { spheres: &self.spheres, vertices, faces, instances: &[] };
         // Rays start on surfaces or on the image plane; no ray origin is farther from a primitive than this.
         let corners = Bounds::of(self.camera.corners());
-        let everything = (0..shapes.count()).map(|i| shapes.bounds(i)).fold(corners, Bounds::union);
-        self.tree = Bvh::build(&shapes, everything.diagonal(), quality, threads);
+        let mut everything = (0..shapes.count()).map(|i| shapes.bounds(i)).fold(corners, Bounds::union);
+        let mut boxes = Vec::with_capacity(parts.placed.len());
+        for (mesh, name, model, map) in &parts.placed {
+            let bounds = Bounds::of(parts.models[*model].vertices.iter().map(|&v| map.apply(v)));
+            if !(bounds.farthest() <= LARGEST_NUMBER || parts.models[*model].faces.is_empty()) {
+                return Err(problem(*mesh, format!("an instance of mesh `{name}` reaches beyond 1e15")));
+            }
+            everything = everything.union(bounds);
+            boxes.push(bounds);
+        }
+        let (reach, farthest) = (everything.diagonal(), everything.farthest());
+        // In the space of a model rays come from everywhere that any of its instances sees.
+        let mut seen: Vec<Bounds> = parts.models.iter().map(|m| Bounds::of(m.vertices.iter().copied())).collect();
+        let mut instances = Vec::with_capacity(parts.placed.len());
+        let mut first = self.surfaces.material_of.len();
+        for ((mesh, name, model, map), bounds) in parts.placed.iter().zip(boxes) {
+            let instance = Instance::new(*model, map, first as u32, bounds, reach, farthest);
+            let flat = || problem(*mesh, format!("an instance of mesh `{name}` is scaled by 0"));
+            let instance = instance.ok_or_else(flat)?;
+            seen[*model] = seen[*model].union(Bounds::of(everything.corners().map(|c| instance.to_model.apply(c))));
+            let count = self.models[*model].material_of.len();
+            self.objects.push(Object { name: name.clone(), first: first as u32, count: count as u32 });
+            let placement =
+                Placement { model: *model, first: first as u32, to_world: *map, to_model: instance.to_model };
+            if count > 0 {
+                self.placements.push(placement);
+                instances.push(instance);
+            }
+            first += count;
+            if first >= NO_PRIMITIVE as usize {
+                return Err(problem(*mesh, "more than 4 billion triangles in all places together".to_owned()));
+            }
+        }
+        let models = parts.models.iter().zip(seen).map(|(Triangles { vertices, faces }, seen)| {
+            let shapes = Shapes { vertices, faces, ..Shapes::default() };
+            Bvh::build(&shapes, vec![], seen.diagonal(), quality, threads)
+        });
+        let models = models.collect();
+        let shapes = Shapes { instances: &instances, ..shapes };
+        self.tree = Bvh::build(&shapes, models, reach, quality, threads);
+        Ok(())
     }
+}
+
+/// Some steps, one after the other.
+fn whole_map(steps: &[Transform]) -> Affine {
+    steps.iter().filter_map(Transform::map).fold(Affine::IDENTITY, Affine::then)
 }
 
 fn light_source(light: &crate::scene::Light) -> LightSource {

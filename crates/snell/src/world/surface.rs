@@ -1,9 +1,8 @@
 //! What surface is at a hit: its normal, its material.
 
 use super::World;
-use crate::geometry::Vec3;
 use crate::geometry::ray::{Shear, axes, main_axis};
-use crate::geometry::triangle;
+use crate::geometry::{Affine, Vec3, triangle};
 use crate::lanes::{Lanes, MAX_WIDTH, Mask};
 
 /// "No primitive", where an id is expected.
@@ -12,11 +11,85 @@ pub const NO_PRIMITIVE: u32 = u32::MAX;
 /// "No corner normals", where their place is expected.
 pub(super) const FLAT: u32 = u32::MAX;
 
+/// What is known of primitives besides their shape, by their ids.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Surfaces {
+    pub material_of: Vec<u32>,
+    /// Normals at the corners of the triangles that are smooth.
+    pub corner_normals: Vec<[Vec3; 3]>,
+    /// For each primitive where its corner normals are, `FLAT` if it has none; empty if none has any.
+    pub corner_normals_of: Vec<u32>,
+}
+
+/// A mesh in one of its places.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Placement {
+    /// Number of the model, whose triangles are numbered from 0.
+    pub model: usize,
+    /// Id of its first triangle here.
+    pub first: u32,
+    pub to_world: Affine,
+    pub to_model: Affine,
+}
+
+impl Surfaces {
+    pub fn memory(&self) -> usize {
+        size_of_val(self.material_of.as_slice())
+            + size_of_val(self.corner_normals.as_slice())
+            + size_of_val(self.corner_normals_of.as_slice())
+    }
+
+    /// The mean of the normals at the corners of a smooth triangle, as near as they are; `None` on a flat one.
+    fn smooth_normal(&self, primitive: usize, corners: [Vec3; 3], point: Vec3, dir: Vec3) -> Option<Vec3> {
+        let at = *self.corner_normals_of.get(primitive)?;
+        let [a, b, c] = self.corner_normals.get(at as usize)?;
+        // The barycentric weights do not depend on where the ray starts: start it at the hit.
+        let k = axes(main_axis(dir));
+        let hit = triangle::intersect(point.permuted(k), &Shear::new(dir.permuted(k)), corners.map(|v| v.permuted(k)));
+        let smooth = *a * (1.0 - hit.beta - hit.gamma) + *b * hit.beta + *c * hit.gamma;
+        // Opposite normals at the corners can cancel, and a grazing ray can find no weights.
+        (smooth.is_finite() && smooth != Vec3::default()).then_some(smooth)
+    }
+}
+
 impl World {
+    /// The placement of a primitive and its id in the model; `None` where it stands for itself.
+    fn placement(&self, primitive: usize) -> Option<(&Placement, usize)> {
+        let after = self.placements.partition_point(|p| p.first as usize <= primitive);
+        let placement = self.placements[..after].last()?;
+        Some((placement, primitive - placement.first as usize))
+    }
+
     /// The material of a primitive.
     #[inline(always)]
     pub(crate) fn material_of(&self, primitive: usize) -> u32 {
-        self.material_of[primitive]
+        match self.surfaces.material_of.get(primitive) {
+            Some(&material) => material,
+            None => self.material_in_model(primitive),
+        }
+    }
+
+    fn material_in_model(&self, primitive: usize) -> u32 {
+        self.placement(primitive).map_or(0, |(placement, id)| self.models[placement.model].material_of[id])
+    }
+
+    /// The corners of a triangle, in the space of the world.
+    fn corners(&self, primitive: usize) -> [Vec3; 3] {
+        match self.placement(primitive) {
+            None => self.tree.corners(primitive),
+            Some((placement, id)) => {
+                self.tree.model(placement.model).corners(id).map(|corner| placement.to_world.apply(corner))
+            }
+        }
+    }
+
+    /// The interpolated normal of a triangle with corners there; `None` on a flat one.
+    fn smooth_normal(&self, primitive: usize, corners: [Vec3; 3], point: Vec3, dir: Vec3) -> Option<Vec3> {
+        let Some((placement, id)) = self.placement(primitive) else {
+            return self.surfaces.smooth_normal(primitive, corners, point, dir);
+        };
+        let normal = self.models[placement.model].smooth_normal(id, corners, point, dir)?;
+        Some(placement.to_model.turn_normal_back(normal))
     }
 
     /// The normals at some hits, turned to face rays of these directions, not yet of unit length. The geometric normal
@@ -40,11 +113,11 @@ impl World {
             // A lane with a sphere gets a triangle without area, and is not looked at.
             let mut corners = [[Vec3::default(); 3]; MAX_WIDTH];
             for lane in (0..L::WIDTH).filter(|&lane| !spheres.test(lane)) {
-                corners[lane] = self.tree.corners(primitives[lane]);
+                corners[lane] = self.corners(primitives[lane]);
             }
             let (a, b) = (Vec3::<L>::from_fn(|lane| corners[lane][0]), Vec3::from_fn(|lane| corners[lane][1]));
             let flat = triangle::normal([a, b, Vec3::from_fn(|lane| corners[lane][2])]);
-            let smooth = if self.corner_normals.is_empty() {
+            let smooth = if self.all_flat {
                 flat
             } else {
                 Vec3::from_fn(|lane| {
@@ -56,17 +129,5 @@ impl World {
             normal = Vec3::select(spheres, normal, Vec3::select(behind, -smooth, smooth));
         }
         normal
-    }
-
-    /// The mean of the normals at the corners of a smooth triangle, as near as they are; `None` on a flat one.
-    fn smooth_normal(&self, primitive: usize, corners: [Vec3; 3], point: Vec3, dir: Vec3) -> Option<Vec3> {
-        let at = *self.corner_normals_of.get(primitive.checked_sub(self.spheres.len())?)?;
-        let [a, b, c] = self.corner_normals.get(at as usize)?;
-        // The barycentric weights do not depend on where the ray starts: start it at the hit.
-        let k = axes(main_axis(dir));
-        let hit = triangle::intersect(point.permuted(k), &Shear::new(dir.permuted(k)), corners.map(|v| v.permuted(k)));
-        let smooth = *a * (1.0 - hit.beta - hit.gamma) + *b * hit.beta + *c * hit.gamma;
-        // Opposite normals at the corners can cancel, and a grazing ray can find no weights.
-        (smooth.is_finite() && smooth != Vec3::default()).then_some(smooth)
     }
 }

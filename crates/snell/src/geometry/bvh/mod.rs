@@ -6,12 +6,14 @@
 //! [packet](packet::Packet) or alone: the arithmetic of a ray with a primitive is the same, whichever of the two stands in lanes.
 
 mod build;
+mod instance;
 mod node;
 mod packet;
 mod primitives;
 mod single;
 
 pub use build::Quality;
+pub use instance::Instance;
 pub(crate) use packet::{Packet, SIZE as PACKET};
 pub use primitives::Shapes;
 
@@ -38,9 +40,12 @@ pub struct Bvh {
     nodes: Vec<Node>,
     primitives: Primitives,
     depth: usize,
+    /// Trees of their own, and where they stand.
+    models: Vec<Bvh>,
+    instances: Vec<Instance>,
 }
 
-/// What a tree is made of.
+/// What a tree is made of, with those of its models.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TreeStatistics {
     /// Nodes of eight boxes.
@@ -86,12 +91,13 @@ struct Waiting {
 
 impl Bvh {
     /// Builds the tree. `reach` is the largest distance between a ray's origin and a primitive.
-    /// `threads`: 0 for as many as the machine has cores.
-    pub fn build(shapes: &Shapes<'_>, reach: f64, quality: Quality, threads: usize) -> Self {
+    /// `models`: the trees that stand at the instances; they have none of their own. `threads`: 0 for as many as the
+    /// machine has cores.
+    pub fn build(shapes: &Shapes<'_>, models: Vec<Self>, reach: f64, quality: Quality, threads: usize) -> Self {
         let padded = |i| OuterBox::around(&shapes.bounds(i), reach * MARGIN);
         let mut tree = build::build(shapes.count(), padded, quality, threads);
         let primitives = Primitives::new(shapes, &mut tree);
-        Self { nodes: tree.nodes, primitives, depth: tree.depth }
+        Self { nodes: tree.nodes, primitives, depth: tree.depth, models, instances: shapes.instances.to_vec() }
     }
 
     /// Fetches what is in a box while others are visited first: a tree of any size does not fit into a cache.
@@ -109,6 +115,11 @@ impl Bvh {
         self.primitives.has_triangles()
     }
 
+    /// A model, by its number.
+    pub(crate) fn model(&self, number: usize) -> &Self {
+        &self.models[number]
+    }
+
     /// The corners of a triangle, by its id.
     pub fn corners(&self, id: usize) -> [Vec3; 3] {
         self.primitives.corners(id)
@@ -117,13 +128,20 @@ impl Bvh {
     /// Nodes, leaves, depth, bytes.
     pub fn statistics(&self) -> TreeStatistics {
         let is_leaf = |child: &&Child| matches!(child.kind(), Kind::Block(_));
-        TreeStatistics {
+        let own = TreeStatistics {
             nodes: self.nodes.len(),
             leaves: self.nodes.iter().flat_map(|node| &node.child).filter(is_leaf).count(),
             depth: self.depth,
             node_bytes: size_of_val(self.nodes.as_slice()),
-            primitive_bytes: self.primitives.memory(),
-        }
+            primitive_bytes: self.primitives.memory() + size_of_val(self.instances.as_slice()),
+        };
+        self.models.iter().map(Self::statistics).fold(own, |all, model| TreeStatistics {
+            nodes: all.nodes + model.nodes,
+            leaves: all.leaves + model.leaves,
+            depth: all.depth.max(own.depth + model.depth),
+            node_bytes: all.node_bytes + model.node_bytes,
+            primitive_bytes: all.primitive_bytes + model.primitive_bytes,
+        })
     }
 
     /// The same primitives in boxes that hold everything: every ray meets every primitive. The oracle of the tests.
@@ -136,6 +154,7 @@ impl Bvh {
                 }
             }
         }
+        self.models = self.models.into_iter().map(Self::flat).collect();
         self
     }
 }
@@ -199,7 +218,7 @@ mod tests {
         let hits = (0..shapes.count()).filter_map(|id| Some((alone(shapes, id, origin, dir)?, id)));
         let nearest = hits.min_by(|a, b| a.partial_cmp(b).unwrap());
         let everything = (0..shapes.count()).map(|i| shapes.bounds(i)).fold(Bounds::of([origin]), Bounds::union);
-        let tree = Bvh::build(shapes, everything.diagonal(), Quality::Good, 1);
+        let tree = Bvh::build(shapes, vec![], everything.diagonal(), Quality::Good, 1);
         let limit = nearest.map_or(f64::INFINITY, |(t, _)| t.next_up());
         for (t_max, copies) in [(f64::INFINITY, 1), (f64::INFINITY, PACKET), (limit, 1), (limit, PACKET)] {
             let found = [
@@ -236,7 +255,7 @@ mod tests {
             let target = center + Vec3::from(pole) * (radius * (1.0 + rim));
             let dir = (target - origin).unit();
             prop_assume!(dir.is_finite());
-            finds_the_same(&Shapes { spheres: &[Sphere { center, radius }], vertices: &[], faces: &[] }, origin, dir);
+            finds_the_same(&Shapes { spheres: &[Sphere { center, radius }], ..Shapes::default() }, origin, dir);
         }
 
         #[test]
@@ -260,7 +279,7 @@ mod tests {
             let target = (corners[0] * weights[0] + corners[1] * weights[1] + corners[2] * weights[2]) * (1.0 / sum);
             let dir = (target - origin).unit();
             prop_assume!(dir.is_finite());
-            finds_the_same(&Shapes { spheres: &[], vertices: &corners, faces: &[[0, 1, 2]] }, origin, dir);
+            finds_the_same(&Shapes { vertices: &corners, faces: &[[0, 1, 2]], ..Shapes::default() }, origin, dir);
         }
 
         /// Enough primitives for several levels, and many rays at the same distance from two of them.
@@ -276,7 +295,7 @@ mod tests {
                 centers.iter().map(|&c| Sphere { center: whole(c) * 2.0, radius: 1.0 }).collect();
             let vertices: Vec<Vec3> = corners.iter().map(|&c| whole(c)).collect();
             let faces: Vec<[u32; 3]> = (0..vertices.len() as u32 / 3).map(|f| [3 * f, 3 * f + 1, 3 * f + 2]).collect();
-            let shapes = Shapes { spheres: &spheres, vertices: &vertices, faces: &faces };
+            let shapes = Shapes { spheres: &spheres, vertices: &vertices, faces: &faces, instances: &[] };
             let origin = whole(origin) + Vec3::new(0.3, 0.3, 0.3);
             finds_the_same(&shapes, origin, dir.unit());
             // Along an axis: into the planes of boxes, and at several spheres at once.

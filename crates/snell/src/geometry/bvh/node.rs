@@ -31,9 +31,10 @@ pub(crate) struct Block {
     pub at: usize,
     pub spheres: usize,
     pub triangles: usize,
+    pub instances: usize,
 }
 
-/// The two highest bits say what it is; a block has eight bits for each count and the rest for its place.
+/// The two highest bits say what it is; a block has four bits for each count and 46 for its place.
 const TAG: u32 = 62;
 const PLACE: u32 = 46;
 
@@ -50,8 +51,9 @@ impl Child {
     }
 
     /// `at` is below 2⁴⁶, the counts are at most 8.
-    pub fn block(Block { at, spheres, triangles }: Block) -> Self {
-        Self(at as u64 | (spheres as u64) << PLACE | (triangles as u64) << (PLACE + 8) | 2 << TAG)
+    pub fn block(Block { at, spheres, triangles, instances }: Block) -> Self {
+        let counts = spheres | triangles << 4 | instances << 8;
+        Self(at as u64 | (counts as u64) << PLACE | 2 << TAG)
     }
 
     #[inline(always)]
@@ -62,8 +64,9 @@ impl Child {
             1 => Kind::Leaf(bits as u32),
             2 => Kind::Block(Block {
                 at: (bits & ((1 << PLACE) - 1)) as usize,
-                spheres: (bits >> PLACE & 0xff) as usize,
-                triangles: (bits >> (PLACE + 8) & 0xff) as usize,
+                spheres: (bits >> PLACE & 15) as usize,
+                triangles: (bits >> (PLACE + 4) & 15) as usize,
+                instances: (bits >> (PLACE + 8) & 15) as usize,
             }),
             _ => Kind::Nothing,
         }

@@ -12,7 +12,7 @@ use super::single::Walker;
 use super::{Bvh, farthest_first};
 use crate::geometry::ray::{Shear, axes, inverse};
 use crate::geometry::{Vec3, sphere, triangle};
-use crate::lanes::{Lanes, Mask};
+use crate::lanes::{Kernel, Lanes, Mask};
 use std::marker::PhantomData;
 
 /// Rays in a packet.
@@ -47,6 +47,8 @@ pub(crate) struct Packet {
     waiting: Vec<BeamWaiting>,
     /// Rays that go alone.
     walkers: Vec<Walker>,
+    /// Rays in the space of a model.
+    pub(super) inner: Option<Box<Packet>>,
 }
 
 /// A box that some rays of a packet may enter, at `t` or later.
@@ -74,18 +76,19 @@ impl Default for Packet {
             main: [0; 3],
             waiting: Vec::new(),
             walkers: Vec::new(),
+            inner: None,
         }
     }
 }
 
 /// The groups of lanes that have rays among these: where each starts, and which of its lanes.
-struct Groups<L> {
+pub(super) struct Groups<L> {
     rays: u64,
     lanes: PhantomData<L>,
 }
 
 #[inline(always)]
-fn groups<L: Lanes>(rays: u64) -> Groups<L> {
+pub(super) fn groups<L: Lanes>(rays: u64) -> Groups<L> {
     Groups { rays, lanes: PhantomData }
 }
 
@@ -147,7 +150,7 @@ impl Packet {
     }
 
     #[inline(always)]
-    fn vector<L: Lanes>(columns: &[Column; 3], start: usize, [x, y, z]: [usize; 3]) -> Vec3<L> {
+    pub(super) fn vector<L: Lanes>(columns: &[Column; 3], start: usize, [x, y, z]: [usize; 3]) -> Vec3<L> {
         Vec3::new(L::load(&columns[x][start..]), L::load(&columns[y][start..]), L::load(&columns[z][start..]))
     }
 
@@ -243,10 +246,30 @@ impl Beam {
     }
 }
 
+/// A function of its own, as a tree calls it for the trees within it.
+struct Intersect<'a, const ANY: bool> {
+    tree: &'a Bvh,
+    packet: &'a mut Packet,
+    rays: u64,
+}
+
+impl<const ANY: bool> Kernel for Intersect<'_, ANY> {
+    type Output = u64;
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> u64 {
+        self.tree.intersect_here::<L, ANY>(self.packet, self.rays)
+    }
+}
+
 impl Bvh {
     /// Finds the closest hit of each of these rays, or with `ANY` just some hit, and says which rays have one.
     #[inline(always)]
-    pub(crate) fn intersect<L: Lanes, const ANY: bool>(&self, packet: &mut Packet, mut rays: u64) -> u64 {
+    pub(crate) fn intersect<L: Lanes, const ANY: bool>(&self, packet: &mut Packet, rays: u64) -> u64 {
+        L::call(Intersect::<ANY> { tree: self, packet, rays })
+    }
+
+    #[inline(always)]
+    fn intersect_here<L: Lanes, const ANY: bool>(&self, packet: &mut Packet, mut rays: u64) -> u64 {
         if self.nodes.is_empty() {
             return 0;
         }
@@ -366,7 +389,7 @@ impl Bvh {
         octant: &Octant,
         block: Block,
     ) -> u64 {
-        let Block { at, spheres, triangles } = block;
+        let Block { at, spheres, triangles, instances } = block;
         let numbers = &self.primitives.numbers[at..];
         let k = octant.axes;
         let mut hit = 0;
@@ -399,6 +422,11 @@ impl Bvh {
             nearest.t.store(&mut packet.t[start..]);
             nearest.primitive.store(&mut packet.primitive[start..]);
         }
+        if instances > 0 {
+            let open = if ANY { rays & !hit } else { rays };
+            let numbers = &numbers[SPHERE * spheres + TRIANGLE * triangles..][..instances];
+            hit |= self.visit_each::<L, ANY>(packet, open, numbers);
+        }
         hit
     }
 }
@@ -407,7 +435,7 @@ impl Bvh {
 #[inline(always)]
 fn alone<L: Lanes>(block: Block, rays: u64) -> bool {
     let each = rays.count_ones() as usize * (block.spheres.div_ceil(L::WIDTH) + block.triangles.div_ceil(L::WIDTH));
-    each <= groups::<L>(rays).count() * (block.spheres + block.triangles)
+    block.instances == 0 && each <= groups::<L>(rays).count() * (block.spheres + block.triangles)
 }
 
 /// Three numbers of one primitive, from these columns of a leaf, in every lane.

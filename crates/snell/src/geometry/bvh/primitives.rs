@@ -1,11 +1,12 @@
 //! The primitives of the leaves, in columns, so that several of a leaf are read at once.
 
+use super::instance::Instance;
 use super::node::{Block, Child, Kind, Tree};
 use crate::geometry::{Bounds, Sphere, Vec3};
 use crate::lanes::MAX_WIDTH;
 
-/// What a tree is built over: all spheres before all triangles, numbered in this order.
-#[derive(Clone, Copy, Debug)]
+/// What a tree is built over: all spheres before all triangles, numbered in this order; then the instances.
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Shapes<'a> {
     /// The spheres.
     pub spheres: &'a [Sphere],
@@ -13,20 +14,26 @@ pub struct Shapes<'a> {
     pub vertices: &'a [Vec3],
     /// Three vertices per triangle.
     pub faces: &'a [[u32; 3]],
+    /// Where other trees stand.
+    pub instances: &'a [Instance],
 }
 
 impl Shapes<'_> {
     /// How many there are.
     pub fn count(&self) -> usize {
-        self.spheres.len() + self.faces.len()
+        self.spheres.len() + self.faces.len() + self.instances.len()
     }
 
-    /// The box of a primitive.
-    pub fn bounds(&self, primitive: usize) -> Bounds {
-        match self.spheres.get(primitive) {
-            Some(sphere) => sphere.bounds(),
-            None => Bounds::of(self.corners(primitive - self.spheres.len())),
+    /// The box of one of them.
+    pub fn bounds(&self, number: usize) -> Bounds {
+        if let Some(sphere) = self.spheres.get(number) {
+            return sphere.bounds();
         }
+        let number = number - self.spheres.len();
+        if number < self.faces.len() {
+            return Bounds::of(self.corners(number));
+        }
+        self.instances[number - self.faces.len()].bounds
     }
 
     fn corners(&self, face: usize) -> [Vec3; 3] {
@@ -42,7 +49,8 @@ pub(super) const TRIANGLE: usize = 10;
 /// All primitives of a tree.
 ///
 /// A leaf of `s` spheres and `t` triangles is `5·s + 10·t` numbers: the columns x, y, z, radius and id of its spheres, then
-/// the columns `ax ay az bx by bz cx cy cz` and id of its triangles, ids ascending. Every `u32` is exact as `f64`.
+/// the columns `ax ay az bx by bz cx cy cz` and id of its triangles, ids ascending, then the numbers of its instances. Every
+/// `u32` is exact as `f64`.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Primitives {
     /// The leaves' columns, and some zeros so that the last one can be read in full lanes.
@@ -56,15 +64,23 @@ pub(super) struct Primitives {
 impl Primitives {
     /// Copies the primitives, leaf by leaf, and makes the leaves of the tree point to them.
     pub fn new(shapes: &Shapes<'_>, tree: &mut Tree) -> Self {
-        let first = shapes.spheres.len();
-        let mut numbers = Vec::with_capacity(SPHERE * first + TRIANGLE * shapes.faces.len() + MAX_WIDTH);
+        // Triangles are numbered from `first` to before `last`, then instances.
+        let (first, last) = (shapes.spheres.len(), shapes.spheres.len() + shapes.faces.len());
+        let count = SPHERE * first + TRIANGLE * shapes.faces.len() + shapes.instances.len() + MAX_WIDTH;
+        let mut numbers = Vec::with_capacity(count);
         let mut places = vec![(0, 0); shapes.faces.len()];
         for child in tree.nodes.iter_mut().flat_map(|node| &mut node.child) {
             let Kind::Leaf(leaf) = child.kind() else { continue };
             let leaf = tree.leaves[leaf as usize];
             let ids = &tree.order[leaf.first as usize..(leaf.first + leaf.count) as usize];
-            let (spheres, triangles) = ids.split_at(ids.partition_point(|&id| (id as usize) < first));
-            *child = Child::block(Block { at: numbers.len(), spheres: spheres.len(), triangles: triangles.len() });
+            let (spheres, others) = ids.split_at(ids.partition_point(|&id| (id as usize) < first));
+            let (triangles, instances) = others.split_at(others.partition_point(|&id| (id as usize) < last));
+            *child = Child::block(Block {
+                at: numbers.len(),
+                spheres: spheres.len(),
+                triangles: triangles.len(),
+                instances: instances.len(),
+            });
             for column in 0..SPHERE {
                 numbers.extend(spheres.iter().map(|&id| {
                     let Sphere { center, radius } = shapes.spheres[id as usize];
@@ -81,6 +97,7 @@ impl Primitives {
                 }
             }
             numbers.extend(triangles.iter().map(|&id| f64::from(id)));
+            numbers.extend(instances.iter().map(|&id| (id as usize - last) as f64));
         }
         numbers.resize(numbers.len() + MAX_WIDTH, 0.0);
         Self { numbers, places, spheres: first }

@@ -113,7 +113,7 @@ impl Bvh {
         octant: &Octant,
         block: Block,
     ) -> bool {
-        let Block { at, spheres, triangles } = block;
+        let Block { at, spheres, triangles, instances } = block;
         let mut found = false;
         let numbers = &self.primitives.numbers[at..];
         if spheres > 0 {
@@ -140,6 +140,10 @@ impl Bvh {
                 let meets = hit.meets & L::Mask::first(triangles - start);
                 found |= keep::<L, ANY>(packet, ray, hit.t, meets, &numbers[(TRIANGLE - 1) * triangles + start..]);
             }
+        }
+        if instances > 0 && !(ANY && found) {
+            let numbers = &numbers[SPHERE * spheres + TRIANGLE * triangles..][..instances];
+            found |= self.visit_each::<L, ANY>(packet, 1 << ray, numbers) != 0;
         }
         found
     }
