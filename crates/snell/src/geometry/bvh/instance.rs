@@ -3,7 +3,7 @@
 use super::packet::{Packet, groups};
 use super::{Bvh, MARGIN};
 use crate::geometry::{Affine, Bounds, Vec3};
-use crate::lanes::Lanes;
+use crate::lanes::{Kernel, Lanes};
 
 /// One place where a model stands.
 #[derive(Clone, Copy, Debug)]
@@ -62,11 +62,28 @@ impl Bvh {
     /// Visits all instances of a leaf, whose numbers these are.
     #[inline(always)]
     pub(super) fn visit_each<L: Lanes, const ANY: bool>(&self, packet: &mut Packet, rays: u64, numbers: &[f64]) -> u64 {
+        L::call(VisitEach::<ANY> { tree: self, packet, rays, numbers })
+    }
+}
+
+/// A function of its own: most leaves have no instances, and nothing of this should stand in their way.
+struct VisitEach<'a, const ANY: bool> {
+    tree: &'a Bvh,
+    packet: &'a mut Packet,
+    rays: u64,
+    numbers: &'a [f64],
+}
+
+impl<const ANY: bool> Kernel for VisitEach<'_, ANY> {
+    type Output = u64;
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> u64 {
+        let Self { tree, packet, rays, numbers } = self;
         let mut hit = 0;
         for &number in numbers {
             let open = if ANY { rays & !hit } else { rays };
             if open != 0 {
-                hit |= self.visit::<L, ANY>(packet, open, &self.instances[number as usize]);
+                hit |= tree.visit::<L, ANY>(packet, open, &tree.instances[number as usize]);
             }
         }
         hit
