@@ -17,10 +17,16 @@ documentation() { RUSTDOCFLAGS='-D warnings' cargo doc --locked --quiet --worksp
 # An intrinsic that is a function of its own was called from code without the instructions of its width: each operation
 # becomes a call through memory, and nothing but the time tells. Only those on f64 are ours; memchr has such functions too.
 kernels_are_inlined() {
-    command -v nm >/dev/null || { absent 'nm' 'sudo apt-get install binutils' && return; }
+    if ! command -v nm >/dev/null; then
+        absent 'nm' 'sudo apt-get install binutils'
+        return
+    fi
     local symbols lost
     symbols=$(nm -C target/ci/snell)
-    grep -q ' snell::' <<<"$symbols" || { echo 'nm shows no functions of ours: has target/ci/snell been stripped?' && return 1; }
+    if ! grep -q ' snell::' <<<"$symbols"; then
+        printf 'nm shows no functions of ours: has target/ci/snell been stripped?\n'
+        return 1
+    fi
     if lost=$(grep -E 'core_arch::x86::(sse|avx)[0-9a-z]*::_mm[0-9]*_([0-9a-z_]*pd|maskz?_)' <<<"$symbols"); then
         printf 'These are called, not inlined; look for a closure or function without #[inline(always)]:\n%s\n' "$lost"
         return 1
