@@ -209,7 +209,7 @@ fn one(mut recipe: Recipe, mut loaded: Loaded, args: &RenderArgs, output: &Path)
     if let Err(report) = written {
         return Err(Failure::new(FAILED, rescue(report, output, format, &rendered, encoding, &text)));
     }
-    summary(&recipe, &world, &rendered, args, output, seconds);
+    summary(&recipe, &world, &rendered, args, &options, output, seconds);
     if !finished {
         return Err(Failure { code: INTERRUPTED, reports: Vec::new() });
     }
@@ -264,7 +264,15 @@ fn warn(report: &Report, args: &RenderArgs) {
 }
 
 /// Says what was done.
-fn summary(recipe: &Recipe, world: &World, rendered: &Rendered, args: &RenderArgs, output: &Path, seconds: f64) {
+fn summary(
+    recipe: &Recipe,
+    world: &World,
+    rendered: &Rendered,
+    args: &RenderArgs,
+    options: &Options<'_>,
+    output: &Path,
+    seconds: f64,
+) {
     let film = &rendered.film;
     let statistics = &rendered.statistics;
     let (rays, lost) = (statistics.rays, statistics.lost);
@@ -280,7 +288,7 @@ fn summary(recipe: &Recipe, world: &World, rendered: &Rendered, args: &RenderArg
                 "file": output, "width": film.crop.width, "height": film.crop.height, "seconds": seconds,
                 "rays": { "camera": rays.camera, "mirror": rays.mirror, "refracted": rays.refracted, "shadow": rays.shadow },
                 "depth": statistics.depth,
-                "lanes": args.lanes.unwrap_or_default().numbers(),
+                "lanes": options.lanes.numbers(),
                 "tree": { "nodes": tree.nodes, "leaves": tree.leaves, "depth": tree.depth },
                 "lost": {
                     "rays": lost.rays, "share": lost.share(pixels), "worst": lost.worst(), "worst_pixel": [worst_x, worst_y],
