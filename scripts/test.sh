@@ -14,6 +14,24 @@ stage() {
 need_tools() { need_rust wasm && need_python && need_node; }
 oracle() { SNELL=$PWD/target/ci/snell .venv/bin/python -m pytest -q tests; }
 documentation() { RUSTDOCFLAGS='-D warnings' cargo doc --locked --quiet --workspace --no-deps --profile ci; }
+# An intrinsic that is a function of its own was called from code without the instructions of its width: each operation
+# becomes a call through memory, and nothing but the time tells. Only those on f64 are ours; memchr has such functions too.
+kernels_are_inlined() {
+    if ! command -v nm >/dev/null; then
+        absent 'nm' 'sudo apt-get install binutils'
+        return
+    fi
+    local symbols lost
+    symbols=$(nm -C target/ci/snell)
+    if ! grep -q ' snell::' <<<"$symbols"; then
+        printf 'nm shows no functions of ours: has target/ci/snell been stripped?\n'
+        return 1
+    fi
+    if lost=$(grep -E 'core_arch::x86::(sse|avx)[0-9a-z]*::_mm[0-9]*_([0-9a-z_]*pd|maskz?_)' <<<"$symbols"); then
+        printf 'These are called, not inlined; look for a closure or function without #[inline(always)]:\n%s\n' "$lost"
+        return 1
+    fi
+}
 same_bits_in_wasm() {
     cargo build --locked --quiet --package snell-wasm-test --target wasm32-unknown-unknown --profile ci
     target/ci/snell-test-scenes >target/same-bits-native.txt
@@ -26,6 +44,7 @@ stage 'tools' need_tools
 stage 'format' cargo fmt --all --check
 stage 'lints' cargo clippy --locked --quiet --workspace --all-targets --profile ci -- -D warnings
 stage 'build' cargo build --locked --quiet --workspace --profile ci
+stage 'kernels are inlined' kernels_are_inlined
 stage 'Rust tests' cargo test --locked --quiet --workspace --profile ci
 stage 'Python tests: the slow oracle, the schema' oracle
 stage 'documentation' documentation

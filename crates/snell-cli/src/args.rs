@@ -5,6 +5,8 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use serde::de::IntoDeserializer;
 use serde::de::value::{Error as ValueError, StrDeserializer};
 use snell::film::Crop;
+use snell::geometry::bvh::Quality;
+use snell::lanes::LaneWidth;
 use snell::scene::{Integrator, MAX_DEPTH, Rounding, Shadows, Transfer};
 use snell_formats::driver::Dialect;
 use std::path::PathBuf;
@@ -112,6 +114,14 @@ pub struct RenderArgs {
     /// Edge of a tile in pixels; the picture does not depend on it
     #[arg(long, value_name = "N", default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..=4096), help_heading = "Work")]
     pub tile: u32,
+    /// How many numbers are computed together: 1, 2, 4 or 8; left out: as many as this machine has instructions for; the
+    /// picture does not depend on it
+    #[arg(long, value_name = "N", env = "SNELL_LANES", value_parser = lanes, help_heading = "Work")]
+    pub lanes: Option<LaneWidth>,
+    /// How the tree over the shapes is built: fast for a first look, best for long renders; the picture does not depend
+    /// on it
+    #[arg(long, value_name = "QUALITY", default_value = "good", value_parser = quality, help_heading = "Work")]
+    pub bvh: Quality,
     /// Say nothing but errors
     #[arg(short, long, help_heading = "Work")]
     pub quiet: bool,
@@ -251,6 +261,20 @@ fn bits(text: &str) -> Result<u8, String> {
         "8" => Ok(8),
         "16" => Ok(16),
         _ => Err("expected 8 or 16".to_owned()),
+    }
+}
+
+fn lanes(text: &str) -> Result<LaneWidth, String> {
+    let width = text.parse().ok().and_then(LaneWidth::of);
+    width.ok_or_else(|| "expected 1, 2, 4 or 8 (if it was not typed, it is in SNELL_LANES)".to_owned())
+}
+
+fn quality(text: &str) -> Result<Quality, String> {
+    match text {
+        "fast" => Ok(Quality::Fast),
+        "good" => Ok(Quality::Good),
+        "best" => Ok(Quality::Best),
+        _ => Err("expected fast, good or best".to_owned()),
     }
 }
 

@@ -113,5 +113,9 @@ fn about_scene(loaded: &Loaded, world: &World) -> String {
     }
     let memory = short(world.memory() as f64);
     line("world", format!("{} primitives, {memory}B", world.primitive_count()));
+    let tree = world.tree();
+    let [boxes, primitives] = [tree.node_bytes, tree.primitive_bytes].map(|bytes| short(bytes as f64));
+    let counts = format!("{} nodes, {} leaves, depth {}", tree.nodes, tree.leaves, tree.depth);
+    line("tree", format!("{counts}, {boxes}B of boxes, {primitives}B of primitives"));
     text
 }

@@ -149,7 +149,7 @@ fn again(from: &Path, args: &RenderArgs, output: &Path) -> Outcome {
 fn one(mut recipe: Recipe, mut loaded: Loaded, args: &RenderArgs, output: &Path) -> Outcome {
     let widened = recipe.apply(&mut loaded.scene);
     let preparing = Phase::start(args.progress, args.quiet, "preparing", &recipe.name);
-    let world = loaded.world().or_fail(SCENE)?;
+    let world = loaded.build(args.bvh, args.threads.into()).or_fail(SCENE)?;
     drop(preparing);
     let widened = widened.map(|note| Report::warning(WarningCode::WidenedBounds, note));
     let warnings: Vec<Report> = widened.into_iter().chain(loaded.warnings_with(&world)).collect();
@@ -174,10 +174,10 @@ fn one(mut recipe: Recipe, mut loaded: Loaded, args: &RenderArgs, output: &Path)
     let options = Options {
         threads: args.threads.into(),
         tile_size: args.tile,
+        lanes: args.lanes.unwrap_or_default(),
         crop: recipe.crop,
         progress: Some(&progress),
         cancel: Some(&CANCEL),
-        ..Options::default()
     };
     let rendered = render(&world, &options).map_err(|e| {
         let code = if matches!(e, RenderError::CropOutside { .. }) { USAGE } else { SCENE };
@@ -209,7 +209,7 @@ fn one(mut recipe: Recipe, mut loaded: Loaded, args: &RenderArgs, output: &Path)
     if let Err(report) = written {
         return Err(Failure::new(FAILED, rescue(report, output, format, &rendered, encoding, &text)));
     }
-    summary(&recipe, &world, &rendered, args, output, seconds);
+    summary(&recipe, &world, &rendered, args, &options, output, seconds);
     if !finished {
         return Err(Failure { code: INTERRUPTED, reports: Vec::new() });
     }
@@ -264,7 +264,15 @@ fn warn(report: &Report, args: &RenderArgs) {
 }
 
 /// Says what was done.
-fn summary(recipe: &Recipe, world: &World, rendered: &Rendered, args: &RenderArgs, output: &Path, seconds: f64) {
+fn summary(
+    recipe: &Recipe,
+    world: &World,
+    rendered: &Rendered,
+    args: &RenderArgs,
+    options: &Options<'_>,
+    output: &Path,
+    seconds: f64,
+) {
     let film = &rendered.film;
     let statistics = &rendered.statistics;
     let (rays, lost) = (statistics.rays, statistics.lost);
@@ -272,6 +280,7 @@ fn summary(recipe: &Recipe, world: &World, rendered: &Rendered, args: &RenderArg
     let (worst_x, worst_y) = lost.worst_pixel(world.camera.size[0]);
     let hash = recipe.film_sha256.as_deref();
     if args.progress == ProgressKind::Json {
+        let tree = world.tree();
         eprintln!(
             "{}",
             json!({
@@ -279,6 +288,8 @@ fn summary(recipe: &Recipe, world: &World, rendered: &Rendered, args: &RenderArg
                 "file": output, "width": film.crop.width, "height": film.crop.height, "seconds": seconds,
                 "rays": { "camera": rays.camera, "mirror": rays.mirror, "refracted": rays.refracted, "shadow": rays.shadow },
                 "depth": statistics.depth,
+                "lanes": options.lanes.numbers(),
+                "tree": { "nodes": tree.nodes, "leaves": tree.leaves, "depth": tree.depth },
                 "lost": {
                     "rays": lost.rays, "share": lost.share(pixels), "worst": lost.worst(), "worst_pixel": [worst_x, worst_y],
                 },

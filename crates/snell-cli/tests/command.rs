@@ -5,8 +5,11 @@
 mod common;
 
 use common::{command, run, snell, stderr, stdout};
+use serde_json::json;
+use std::fmt::Write;
 use std::fs;
 use std::path::Path;
+use std::process::Command;
 use std::time::{Duration, Instant};
 
 const TINY: &[&str] = &["--size", "24x24"];
@@ -141,6 +144,22 @@ fn triangle_scene(at: &Path) {
     fs::write(at.join("d.txt"), DRIVER).unwrap();
     fs::write(at.join("models/t.obj"), format!("mtllib t.mtl\n{TRIANGLE}")).unwrap();
     fs::write(at.join("models/t.mtl"), "newmtl m\nKa .5 .6 .7\n").unwrap();
+}
+
+/// Some hundred triangles of all sizes.
+fn bumps(at: &Path) {
+    let mut model = String::new();
+    for i in 0..300u32 {
+        let [x, y, z] = [13, 29, 7].map(|step| f64::from(i * step % 101) / 50.0 - 1.0);
+        let size = f64::from(i % 10 + 1) / 20.0;
+        writeln!(model, "v {x} {y} {z}\nv {} {y} {z}\nv {x} {} {z}\nf -3 -2 -1", x + size, y + size).unwrap();
+    }
+    fs::write(at.join("t.obj"), model).unwrap();
+    let scene = "snell = 1\nambient = 1\n[render]\nintegrator = 'lecture'\nsize = [40, 40]\nmax_depth = 1\n[camera]\n\
+                 eye = [0, 0, 9]\nlook_at = [0, 0, 0]\nup = [0, 1, 0]\nbounds = [-1, 1, -1, 1]\nnear = -5\n\
+                 [material.m]\nka = 0.2\nkd = 0.5\nkr = 0.5\n[[mesh]]\nfile = 't.obj'\nmaterial = 'm'\n\
+                 [[light]]\nposition = [3, 4, 9]\ncolor = 1\n";
+    fs::write(at.join("s.toml"), scene).unwrap();
 }
 
 #[test]
@@ -310,6 +329,8 @@ fn wrong_usage_ends_with_2() {
         &["render", "lecture/default", "--depth", "1001"],
         &["render", "lecture/default", "--threads", "5000"],
         &["render", "lecture/default", "--bits", "12"],
+        &["render", "lecture/default", "--bvh", "better"],
+        &["render", "lecture/default", "--lanes", "3"],
         &["render", "lecture/default", "--set", "material.glass.eta"],
         &["render", "lecture/default", "--search", "no-such-folder"],
         &["render", "lecture/default", "--size", "9x9", "--crop", "0,0,4000000000,4000000000"],
@@ -364,6 +385,62 @@ fn progress_as_json_is_json() {
     assert_eq!(done["film_sha256"].as_str().unwrap().len(), 64);
 }
 
+/// What `render --progress json` says at the end.
+fn done(mut render: Command) -> serde_json::Value {
+    let output = render.args(["-o", "a.png", "--progress", "json"]).output().unwrap();
+    assert!(output.status.success(), "{}", stderr(&output));
+    serde_json::from_str(stderr(&output).lines().last().unwrap()).unwrap()
+}
+
+/// The tree over a picture of many triangles is another one for each quality, so that it is seen whether one arrives.
+#[test]
+fn neither_lanes_nor_the_tree_change_the_picture() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    bumps(at);
+    let render = |arguments: &[&str]| done(command(at, &[&["render", "s.toml"], arguments].concat()));
+    let default = render(&[]);
+    assert!(default["rays"]["mirror"].as_u64().unwrap() > 300, "hardly anything is hit: {default}");
+    for (lanes, number) in [("1", 1), ("2", 2), ("4", 4), ("8", 8)] {
+        let made = render(&["--lanes", lanes]);
+        assert_eq!((&made["lanes"], &made["film_sha256"]), (&json!(number), &default["film_sha256"]));
+    }
+    let made = ["fast", "good", "best"].map(|quality| render(&["--bvh", quality]));
+    for one in &made {
+        assert_eq!(one["film_sha256"], default["film_sha256"]);
+    }
+    assert_eq!(made[1]["tree"], default["tree"]);
+    assert!(made[0]["tree"] != made[1]["tree"] && made[1]["tree"] != made[2]["tree"], "{made:?}");
+    // Nor are they part of what a picture remembers: a picture made in any other way is the same file.
+    render(&["--lanes", "1", "--bvh", "fast"]);
+    let picture = fs::read(at.join("a.png")).unwrap();
+    render(&["--lanes", "8", "--bvh", "best"]);
+    assert!(fs::read(at.join("a.png")).unwrap() == picture, "the files differ");
+}
+
+#[test]
+fn lanes_can_come_from_the_environment() {
+    let folder = tempfile::tempdir().unwrap();
+    let with = |variable: &str, arguments: &[&str]| {
+        let mut render = command(folder.path(), &[&["render", "lecture/default"], TINY, arguments].concat());
+        render.env("SNELL_LANES", variable);
+        render
+    };
+    assert_eq!(done(with("1", &[]))["lanes"], 1);
+    assert_eq!(done(with("4", &[]))["lanes"], 4);
+    assert_eq!(done(with("4", &["--lanes", "2"]))["lanes"], 2, "what is typed wins");
+    assert_eq!(done(with("3", &["--lanes", "2"]))["lanes"], 2, "what is not used may be wrong");
+    for wrong in ["3", "0", "16", "-1", "two", " 2", "18446744073709551617"] {
+        let output = with(wrong, &[]).output().unwrap();
+        let said = stderr(&output);
+        assert_eq!(output.status.code(), Some(2), "{wrong}: {said}");
+        assert!(said.contains(&format!("'{wrong}'")) && said.contains("expected 1, 2, 4 or 8"), "{said}");
+        assert!(said.contains("--lanes") && said.contains("SNELL_LANES"), "{said}");
+    }
+    // It is the business of `render` alone.
+    assert!(command(folder.path(), &["scenes"]).env("SNELL_LANES", "3").status().unwrap().success());
+}
+
 #[test]
 fn stderr_into_a_file_has_no_bar_and_no_colour() {
     let folder = tempfile::tempdir().unwrap();
@@ -390,7 +467,7 @@ fn interrupted_renders_keep_what_is_done() {
         while !lines.next().unwrap().unwrap().contains("\"progress\"") {}
         let rest = std::thread::spawn(move || lines.map_while(Result::ok).collect::<Vec<_>>());
         let interrupted = Instant::now();
-        let kill = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+        let kill = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
         assert!(kill.success());
         assert_eq!(child.wait().unwrap().code(), Some(130));
         // Stopping takes milliseconds; writing 36 million pixels takes the rest, on a machine that does other things too.
@@ -414,6 +491,7 @@ fn info_schema_and_completions_answer() {
     for expected in ["dialect", "2018", "course2018, depth 0", "8 x 8", "1 triangles"] {
         assert!(info.contains(expected), "{expected} in\n{info}");
     }
+    assert!(info.contains("  tree        1 nodes, 1 leaves, depth 1, "), "{info}");
     let schema: serde_json::Value = serde_json::from_str(&stdout(&run(at, &["schema"]))).unwrap();
     assert!(schema["properties"]["sphere"].is_object());
     for shell in ["bash", "zsh", "fish"] {

@@ -7,6 +7,7 @@ use crate::scene_file::{self, Syntax};
 use crate::{builtin, disk};
 use serde::{Deserialize, Serialize};
 use snell::geometry::TriangleMesh;
+use snell::geometry::bvh::Quality;
 use snell::scene::{Material, Problem, Scene, Step, Warning, WarningCode};
 use snell::world::World;
 use std::collections::HashMap;
@@ -236,7 +237,15 @@ impl Loaded {
     /// # Errors
     /// What is wrong with it, each at its place; from [`MOST_PROBLEMS`] on only their number.
     pub fn world(&self) -> Result<World, Vec<Report>> {
-        World::new(&self.scene).map_err(|problems| {
+        self.build(Quality::default(), 0)
+    }
+
+    /// Compiles the scene with a tree of this quality, on so many threads; see [`World::build`].
+    ///
+    /// # Errors
+    /// As [`world`](Self::world).
+    pub fn build(&self, quality: Quality, threads: usize) -> Result<World, Vec<Report>> {
+        World::build(&self.scene, quality, threads).map_err(|problems| {
             let mut reports: Vec<Report> = problems.iter().take(MOST_PROBLEMS).map(|p| self.report(p)).collect();
             if problems.len() > MOST_PROBLEMS {
                 let more = problems.len() - MOST_PROBLEMS;

@@ -12,7 +12,7 @@ pub fn snell(folder: &Path, arguments: &[&str]) -> Output {
 
 pub fn command(folder: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_snell"));
-    command.current_dir(folder).args(arguments).env_remove("RUST_BACKTRACE");
+    command.current_dir(folder).args(arguments).env_remove("RUST_BACKTRACE").env_remove("SNELL_LANES");
     command
 }
 

@@ -122,8 +122,12 @@ pub fn pow<L: Lanes>(base: L, exponent: L) -> L {
 /// `c₀ + x (c₁ + x (c₂ + ...))`.
 #[inline(always)]
 fn horner<L: Lanes, const N: usize>(x: L, coefficients: [f64; N]) -> L {
-    let leading = L::splat(coefficients[N - 1]);
-    coefficients[..N - 1].iter().rev().fold(leading, |sum, &c| L::splat(c) + x * sum)
+    // No `fold`: a closure may become a function of its own, without the instructions of the width.
+    let mut sum = L::splat(coefficients[N - 1]);
+    for i in (0..N - 1).rev() {
+        sum = L::splat(coefficients[i]) + x * sum;
+    }
+    sum
 }
 
 #[cfg(test)]

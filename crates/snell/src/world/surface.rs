@@ -112,8 +112,10 @@ impl World {
         if (!spheres).any() {
             // A lane with a sphere gets a triangle without area, and is not looked at.
             let mut corners = [[Vec3::default(); 3]; MAX_WIDTH];
-            for lane in (0..L::WIDTH).filter(|&lane| !spheres.test(lane)) {
-                corners[lane] = self.corners(primitives[lane]);
+            for lane in 0..L::WIDTH {
+                if !spheres.test(lane) {
+                    corners[lane] = self.corners(primitives[lane]);
+                }
             }
             let (a, b) = (Vec3::<L>::from_fn(|lane| corners[lane][0]), Vec3::from_fn(|lane| corners[lane][1]));
             let flat = triangle::normal([a, b, Vec3::from_fn(|lane| corners[lane][2])]);
