@@ -1,9 +1,9 @@
 //! The tree of boxes: eight to a node, up to eight primitives to a leaf.
 //!
 //! The answer does not depend on the tree. Every box holds its primitives with a margin that is larger than the
-//! rounding errors of the primitive tests (see [`MARGIN`]), and at equal distance the lower primitive id is hit,
+//! rounding errors of the primitive tests (see `MARGIN`), and at equal distance the lower primitive id is hit,
 //! so any tree, and no tree at all, finds the same hit to the last bit. Nor does it depend on the way down the tree, in a
-//! [packet](packet::Packet) or alone: the arithmetic of a ray with a primitive is the same, whichever of the two stands in lanes.
+//! packet or alone: the arithmetic of a ray with a primitive is the same, whichever of the two stands in lanes.
 
 mod build;
 mod instance;
@@ -20,6 +20,7 @@ pub use primitives::Shapes;
 use super::Vec3;
 use super::bounds::OuterBox;
 use crate::lanes::prefetch;
+use crate::threads;
 use node::{Child, Kind, Node};
 use primitives::Primitives;
 
@@ -33,6 +34,9 @@ use primitives::Primitives;
 /// more than all of these together with those of the slab test. The textbook discriminant of near spheres errs by more;
 /// their boxes come with that margin ([`sphere::MARGIN`](super::sphere::MARGIN)).
 const MARGIN: f64 = 1.0 / (1u64 << 48) as f64;
+
+/// Fewer primitives are done before threads have started.
+const WORTH_THREADS: usize = 1 << 12;
 
 /// A tree of boxes over spheres and triangles, with its own copy of them.
 #[derive(Clone, Debug, Default)]
@@ -95,8 +99,12 @@ impl Bvh {
     /// machine has cores.
     pub fn build(shapes: &Shapes<'_>, models: Vec<Self>, reach: f64, quality: Quality, threads: usize) -> Self {
         let padded = |i| OuterBox::around(&shapes.bounds(i), reach * MARGIN);
-        let mut tree = build::build(shapes.count(), padded, quality, threads);
-        let primitives = Primitives::new(shapes, &mut tree);
+        let threads = if shapes.count() < WORTH_THREADS { 1 } else { threads };
+        let (tree, primitives) = threads::share(threads, |parallel| {
+            let mut tree = build::build(shapes.count(), padded, quality, parallel);
+            let primitives = Primitives::new(shapes, &mut tree, parallel);
+            (tree, primitives)
+        });
         Self { nodes: tree.nodes, primitives, depth: tree.depth, models, instances: shapes.instances.to_vec() }
     }
 

@@ -4,6 +4,7 @@ use super::instance::Instance;
 use super::node::{Block, Child, Kind, Tree};
 use crate::geometry::{Bounds, Sphere, Vec3};
 use crate::lanes::MAX_WIDTH;
+use crate::memory;
 
 /// What a tree is built over: all spheres before all triangles, numbered in this order; then the instances.
 #[derive(Clone, Copy, Debug, Default)]
@@ -63,43 +64,29 @@ pub(super) struct Primitives {
 
 impl Primitives {
     /// Copies the primitives, leaf by leaf, and makes the leaves of the tree point to them.
-    pub fn new(shapes: &Shapes<'_>, tree: &mut Tree) -> Self {
+    pub fn new(shapes: &Shapes<'_>, tree: &mut Tree, parallel: bool) -> Self {
         // Triangles are numbered from `first` to before `last`, then instances.
         let (first, last) = (shapes.spheres.len(), shapes.spheres.len() + shapes.faces.len());
-        let count = SPHERE * first + TRIANGLE * shapes.faces.len() + shapes.instances.len() + MAX_WIDTH;
-        let mut numbers = Vec::with_capacity(count);
+        let mut jobs = Vec::with_capacity(tree.leaves.len());
         let mut places = vec![(0, 0); shapes.faces.len()];
+        let mut count = 0;
         for child in tree.nodes.iter_mut().flat_map(|node| &mut node.child) {
             let Kind::Leaf(leaf) = child.kind() else { continue };
             let leaf = tree.leaves[leaf as usize];
             let ids = &tree.order[leaf.first as usize..(leaf.first + leaf.count) as usize];
             let (spheres, others) = ids.split_at(ids.partition_point(|&id| (id as usize) < first));
             let (triangles, instances) = others.split_at(others.partition_point(|&id| (id as usize) < last));
-            *child = Child::block(Block {
-                at: numbers.len(),
-                spheres: spheres.len(),
-                triangles: triangles.len(),
-                instances: instances.len(),
-            });
-            for column in 0..SPHERE {
-                numbers.extend(spheres.iter().map(|&id| {
-                    let Sphere { center, radius } = shapes.spheres[id as usize];
-                    [center.x, center.y, center.z, radius, f64::from(id)][column]
-                }));
-            }
+            let block =
+                Block { at: count, spheres: spheres.len(), triangles: triangles.len(), instances: instances.len() };
+            *child = Child::block(block);
             for (i, &id) in triangles.iter().enumerate() {
-                places[id as usize - first] = ((numbers.len() + i) as u32, triangles.len() as u32);
+                places[id as usize - first] = ((count + SPHERE * spheres.len() + i) as u32, triangles.len() as u32);
             }
-            for corner in 0..3 {
-                for axis in 0..3 {
-                    let number = |&id: &u32| shapes.corners(id as usize - first)[corner].component(axis);
-                    numbers.extend(triangles.iter().map(number));
-                }
-            }
-            numbers.extend(triangles.iter().map(|&id| f64::from(id)));
-            numbers.extend(instances.iter().map(|&id| (id as usize - last) as f64));
+            jobs.push((block, ids));
+            count += SPHERE * spheres.len() + TRIANGLE * triangles.len() + instances.len();
         }
-        numbers.resize(numbers.len() + MAX_WIDTH, 0.0);
+        let mut numbers = memory::zeros(count + MAX_WIDTH).unwrap_or_else(|| vec![0.0; count + MAX_WIDTH]);
+        fill(shapes, &jobs, &mut numbers, parallel);
         Self { numbers, places, spheres: first }
     }
 
@@ -116,5 +103,44 @@ impl Primitives {
 
     pub fn memory(&self) -> usize {
         size_of_val(self.numbers.as_slice()) + size_of_val(self.places.as_slice())
+    }
+}
+
+/// Writes the numbers of some leaves, which start with those of the first one.
+fn fill(shapes: &Shapes<'_>, jobs: &[(Block, &[u32])], numbers: &mut [f64], parallel: bool) {
+    const ALONE: usize = 1 << 10;
+    if parallel && jobs.len() > ALONE {
+        let (left, right) = jobs.split_at(jobs.len() / 2);
+        let (left_numbers, right_numbers) = numbers.split_at_mut(right[0].0.at - left[0].0.at);
+        rayon::join(|| fill(shapes, left, left_numbers, true), || fill(shapes, right, right_numbers, true));
+        return;
+    }
+    let (first, last) = (shapes.spheres.len(), shapes.spheres.len() + shapes.faces.len());
+    let mut rest = numbers;
+    for (Block { spheres, triangles, instances, .. }, ids) in jobs {
+        let (sphere_ids, others) = ids.split_at(*spheres);
+        let (triangle_ids, instance_ids) = others.split_at(*triangles);
+        let (block, after) = rest.split_at_mut(SPHERE * spheres);
+        for (i, &id) in sphere_ids.iter().enumerate() {
+            let Sphere { center, radius } = shapes.spheres[id as usize];
+            put(block, *spheres, i, [center.x, center.y, center.z, radius, f64::from(id)]);
+        }
+        let (block, after) = after.split_at_mut(TRIANGLE * triangles);
+        for (i, &id) in triangle_ids.iter().enumerate() {
+            let [a, b, c] = shapes.corners(id as usize - first);
+            put(block, *triangles, i, [a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z, f64::from(id)]);
+        }
+        let (block, after) = after.split_at_mut(*instances);
+        for (number, &id) in block.iter_mut().zip(instance_ids) {
+            *number = (id as usize - last) as f64;
+        }
+        rest = after;
+    }
+}
+
+/// Writes one primitive into the columns of its leaf.
+fn put<const N: usize>(block: &mut [f64], stride: usize, i: usize, row: [f64; N]) {
+    for (column, number) in row.into_iter().enumerate() {
+        block[column * stride + i] = number;
     }
 }

@@ -39,15 +39,9 @@ pub enum Quality {
 }
 
 /// Builds the tree over `count` primitives, fewer than 2³¹, whose boxes are `bounds(primitive)`; they have no NaN.
-/// `threads`: 0 for as many as there are processors.
-pub(super) fn build(count: usize, bounds: impl Fn(usize) -> OuterBox + Sync, quality: Quality, threads: usize) -> Tree {
-    if threads != 1 && count > PARALLEL {
-        // Where there are no threads to be had (WASM), the caller does the work.
-        if let Ok(pool) = rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
-            return pool.install(|| Builder { quality, parallel: true }.build(count, &bounds));
-        }
-    }
-    Builder { quality, parallel: false }.build(count, &bounds)
+/// `parallel`: with all threads of the pool it is called in.
+pub(super) fn build(count: usize, bounds: impl Fn(usize) -> OuterBox + Sync, quality: Quality, parallel: bool) -> Tree {
+    Builder { quality, parallel: parallel && count > PARALLEL }.build(count, &bounds)
 }
 
 struct Builder {
