@@ -282,7 +282,7 @@ impl Bvh {
                 let negative = packet.negative[axis];
                 alike &= if octant.side[axis] == 1 { negative } else { !negative };
             }
-            // A direction without any sense has no main axis.
+            // The first is always like itself; said again, so that the loop surely ends.
             alike |= 1 << first;
             rays &= !alike;
             if alike.count_ones() <= FEW {
