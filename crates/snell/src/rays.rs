@@ -11,13 +11,17 @@ use std::sync::{Mutex, PoisonError};
 const CHUNK: usize = 16 * PACKET;
 
 /// Rays in columns, all of the same length. Neighbours that go nearly the same way are traced faster.
+///
+/// A ray with a NaN hits nothing. The boxes of the tree have margins for rays that start within the box of the scene, its
+/// image plane included: from much farther away a hit at the very rim of a primitive may be missed, by the rounding of its
+/// distance.
 #[derive(Clone, Debug, Default)]
 pub struct RayBatch {
     /// Where the rays start: x, y, z.
     pub origin: [Vec<f64>; 3],
     /// Where they go; spheres want unit length, and `t` counts in this length.
     pub dir: [Vec<f64>; 3],
-    /// Hits must lie strictly beyond this distance.
+    /// Hits must lie strictly beyond this distance; a negative one counts as 0, as rays have no part behind their origin.
     pub t_min: Vec<f64>,
     /// Hits must lie strictly before this distance.
     pub t_max: Vec<f64>,
@@ -36,6 +40,13 @@ impl RayBatch {
     /// How many rays.
     pub fn len(&self) -> usize {
         self.t_max.len()
+    }
+
+    /// So many workers have something to do; all columns are of the same length.
+    fn check(&self, threads: usize) -> usize {
+        let columns = self.origin.iter().chain(&self.dir).chain([&self.t_min, &self.t_max]);
+        assert!(columns.map(Vec::len).all(|len| len == self.len()), "the columns of the rays differ in length");
+        threads.min(self.len().div_ceil(CHUNK).max(1))
     }
 
     /// Are there none?
@@ -63,7 +74,9 @@ impl RayBatch {
             let [dx, dy, dz] = &self.dir;
             let origin = Vec3::new(lanes::<L>(ox, row), lanes(oy, row), lanes(oz, row));
             let dir = Vec3::new(lanes::<L>(dx, row), lanes(dy, row), lanes(dz, row));
-            let (t_min, t_max) = (lanes(&self.t_min, row), lanes(&self.t_max, row));
+            // Packets are made for this: a beam begins at 0. A NaN stays one.
+            let t_min = L::splat(0.0).max(lanes(&self.t_min, row));
+            let t_max = lanes(&self.t_max, row);
             packet.set(start, origin, dir, t_min, t_max, L::splat(-1.0), shear);
         }
         u64::MAX >> (PACKET - count)
@@ -87,6 +100,7 @@ fn lanes<L: Lanes>(column: &[f64], row: usize) -> L {
 /// # Panics
 /// If the columns of the rays are not of the same length.
 pub fn closest_hits(world: &World, rays: &RayBatch, threads: usize, width: LaneWidth, hits: &mut HitBatch) {
+    let threads = rays.check(threads);
     hits.t.resize(rays.len(), 0.0);
     hits.primitive.resize(rays.len(), NO_PRIMITIVE);
     let chunks = hits.t.chunks_mut(CHUNK).zip(hits.primitive.chunks_mut(CHUNK)).enumerate();
@@ -104,6 +118,7 @@ pub fn closest_hits(world: &World, rays: &RayBatch, threads: usize, width: LaneW
 /// # Panics
 /// If the columns of the rays are not of the same length.
 pub fn any_hits(world: &World, rays: &RayBatch, threads: usize, width: LaneWidth, blocked: &mut Vec<bool>) {
+    let threads = rays.check(threads);
     blocked.resize(rays.len(), false);
     let chunks = Mutex::new(blocked.chunks_mut(CHUNK).enumerate());
     threads::run(threads, || {
@@ -165,5 +180,117 @@ impl Kernel for Any<'_> {
                 *blocked = hit >> i & 1 == 1;
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::film::Rgb;
+    use crate::film::transfer::{Rounding, Transfer};
+    use crate::scene::{Camera, Integrator, Material, Render, Scene, Shadows, Sphere};
+
+    /// Thirty spheres of radius 1 in a row along z, ten apart.
+    fn spheres() -> World {
+        let sphere = |i: i32| Sphere {
+            name: None,
+            center: [0.0, 0.0, 10.0 * f64::from(i)],
+            radius: 1.0,
+            material: "grey".to_owned(),
+        };
+        World::new(&Scene {
+            snell: 1,
+            schema: None,
+            ambient: Rgb::gray(0.2),
+            eta_outside: 1.0,
+            render: Render {
+                integrator: Integrator::Lecture,
+                size: [1, 1],
+                max_depth: 0,
+                shadows: Shadows::Off,
+                transfer: Transfer::Linear,
+                rounding: Rounding::Round,
+            },
+            camera: Camera {
+                eye: [0.0, 0.0, 310.0],
+                look_at: [0.0; 3],
+                up: [0.0, 1.0, 0.0],
+                bounds: [-1.0, 1.0, -1.0, 1.0],
+                near: -5.0,
+                far: None,
+            },
+            lights: vec![],
+            materials: [("grey".to_owned(), Material::default())].into(),
+            spheres: (0..30).map(sphere).collect(),
+            meshes: vec![],
+        })
+        .unwrap()
+    }
+
+    fn hits(world: &World, rays: &RayBatch, width: LaneWidth) -> Vec<u32> {
+        let mut hits = HitBatch::default();
+        closest_hits(world, rays, 1, width, &mut hits);
+        let mut blocked = Vec::new();
+        any_hits(world, rays, 1, width, &mut blocked);
+        assert_eq!(blocked, hits.primitive.iter().map(|&p| p != NO_PRIMITIVE).collect::<Vec<_>>());
+        hits.primitive
+    }
+
+    #[test]
+    fn what_lies_behind_a_ray_is_the_same_alone_and_among_others() {
+        let world = spheres();
+        for width in LaneWidth::ALL {
+            for (count, t_min) in [(1, -100.0), (64, -100.0), (64, -0.0), (64, f64::NAN)] {
+                let mut rays = RayBatch::default();
+                for _ in 0..count {
+                    rays.push(Vec3::new(0.0, 0.0, 315.0), Vec3::new(0.0, 0.0, 1.0), t_min, 1e3);
+                }
+                assert_eq!(hits(&world, &rays, width), vec![NO_PRIMITIVE; count], "{count} rays from {t_min}");
+            }
+        }
+    }
+
+    #[test]
+    fn limits_are_strict_and_nonsense_hits_nothing() {
+        let world = spheres();
+        let (origin, dir) = (Vec3::new(0.0, 0.0, -9.0), Vec3::new(0.0, 0.0, 1.0));
+        for width in LaneWidth::ALL {
+            for count in [1, 7, 64, 65, 3000] {
+                for (t_min, t_max, expected) in [
+                    (0.0, 8.0, NO_PRIMITIVE),
+                    (0.0, 8.0f64.next_up(), 0),
+                    (8.0, 20.0, 1),
+                    (8.0, 8.0, NO_PRIMITIVE),
+                    (9.0, 7.0, NO_PRIMITIVE),
+                    (0.0, f64::NAN, NO_PRIMITIVE),
+                    (f64::NAN, 20.0, NO_PRIMITIVE),
+                    (0.0, f64::INFINITY, 0),
+                    (f64::INFINITY, f64::INFINITY, NO_PRIMITIVE),
+                ] {
+                    let mut rays = RayBatch::default();
+                    for i in 0..count {
+                        // The same direction with zeros of both signs.
+                        let zero = if i % 2 == 0 { 0.0 } else { -0.0 };
+                        rays.push(origin, Vec3::new(zero, -zero, dir.z), t_min, t_max);
+                    }
+                    assert_eq!(hits(&world, &rays, width), vec![expected; count], "{t_min} to {t_max}");
+                }
+                for bad in [f64::NAN, 0.0] {
+                    let mut rays = RayBatch::default();
+                    (0..count).for_each(|_| rays.push(origin, Vec3::new(bad, bad, bad), 0.0, 1e9));
+                    assert_eq!(hits(&world, &rays, width), vec![NO_PRIMITIVE; count]);
+                }
+            }
+        }
+        assert!(hits(&world, &RayBatch::default(), LaneWidth::Two).is_empty());
+    }
+
+    #[test]
+    #[should_panic(expected = "columns of the rays")]
+    fn columns_of_different_lengths_are_refused() {
+        let mut rays = RayBatch::default();
+        (0..9).for_each(|_| rays.push(Vec3::new(0.0, 0.0, -9.0), Vec3::new(0.0, 0.0, 1.0), 0.0, 1e9));
+        rays.dir[2].pop();
+        hits(&spheres(), &rays, LaneWidth::Four);
     }
 }

@@ -79,17 +79,34 @@ impl Affine {
         if x.dot(y.cross(z)) < 0.0 { -across } else { across }
     }
 
-    /// The map that undoes this one, by cofactors; `None` where there is none, or none with finite numbers.
+    /// The map that undoes this one; `None` where there is none, or none with finite numbers.
+    ///
+    /// By Gauss-Jordan elimination with partial pivoting, whose error is that of the condition of the map, `2⁻⁵³·‖M‖·‖M⁻¹‖`
+    /// (Higham, *Accuracy and Stability of Numerical Algorithms*, 2002, section 14.4). Cofactors would lose all digits of
+    /// the determinant where a map turns what it has stretched.
     pub fn inverse(&self) -> Option<Self> {
-        let [x, y, z] = self.rows;
-        let columns = [y.cross(z), z.cross(x), x.cross(y)];
-        let scale = 1.0 / x.dot(columns[0]);
-        let rows = [0, 1, 2]
-            .map(|i| Vec3::new(columns[0].component(i), columns[1].component(i), columns[2].component(i)) * scale);
-        let linear = Self { rows, offset: Vec3::default() };
+        let mut left = self.rows.map(<[f64; 3]>::from);
+        let mut right = Self::IDENTITY.rows.map(<[f64; 3]>::from);
+        for column in 0..3 {
+            let size = |row: usize| left[row][column].abs();
+            let pivot = (column..3).fold(column, |best, row| if size(row) > size(best) { row } else { best });
+            left.swap(column, pivot);
+            right.swap(column, pivot);
+            // 0 makes numbers that are not finite.
+            let divisor = left[column][column];
+            let [own_left, own_right] = [left[column], right[column]].map(|row| row.map(|number| number / divisor));
+            for row in 0..3 {
+                let factor = left[row][column];
+                for i in 0..3 {
+                    left[row][i] -= factor * own_left[i];
+                    right[row][i] -= factor * own_right[i];
+                }
+            }
+            (left[column], right[column]) = (own_left, own_right);
+        }
+        let linear = Self { rows: right.map(Vec3::from), offset: Vec3::default() };
         let inverse = Self { offset: -linear.apply(self.offset), ..linear };
-        let numbers = rows.iter().chain([&inverse.offset]);
-        (scale != 0.0 && numbers.copied().all(Vec3::is_finite)).then_some(inverse)
+        inverse.rows.iter().chain([&inverse.offset]).all(|v| v.is_finite()).then_some(inverse)
     }
 
     /// The Frobenius norm of the map without its offset: no vector gets longer by more than this factor.
@@ -149,5 +166,21 @@ mod tests {
         let map = Affine::rotation(Vec3::new(1.0, 1.0, 1.0), 120.0).unwrap();
         let p = map.apply(Vec3::new(1.0, 2.0, 3.0)) - Vec3::new(3.0, 1.0, 2.0);
         assert!(p.length() < 3e-15, "a few roundings of numbers up to 3: {p:?}");
+    }
+
+    /// As near as the condition of the map allows, `2⁻⁵³·‖M‖·‖M⁻¹‖` of the inverse: hits of instances count on it.
+    #[test]
+    fn the_inverse_of_a_stretched_map_is_as_good_as_its_condition() {
+        for exponent in 0..=6 {
+            let long = libm::exp10(f64::from(exponent));
+            let first = Affine::rotation(Vec3::new(1.0, -2.0, 0.5), 35.0).unwrap();
+            let second = Affine::rotation(Vec3::new(0.3, 1.0, 1.0), 71.0).unwrap();
+            let map = first.then(Affine::scaling(Vec3::new(long, 1.0, 1.0 / long))).then(second);
+            let inverse = map.inverse().unwrap();
+            let both = inverse.then(map);
+            let off = Affine { rows: [0, 1, 2].map(|i| both.rows[i] - Affine::IDENTITY.rows[i]), ..both }.norm();
+            let bound = 32.0 * f64::EPSILON * map.norm() * inverse.norm();
+            assert!(off <= bound, "stretched by {long}: off by {off}, not {bound}");
+        }
     }
 }

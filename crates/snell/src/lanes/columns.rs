@@ -83,10 +83,12 @@ impl<const N: usize> Columns<N> {
 
     #[cold]
     fn grow(&mut self, needed: usize) {
-        self.room = needed.next_power_of_two();
+        let room = needed.next_power_of_two();
         for column in &mut self.values {
-            column.resize(self.room, 0.0);
+            column.resize(room, 0.0);
         }
+        // Only now: where there is not so much memory, `resize` does not come back.
+        self.room = room;
     }
 
     /// Appends the lanes that the mask names, in lane order.

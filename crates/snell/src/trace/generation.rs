@@ -15,7 +15,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 const GENERATION_BUDGET: usize = 1 << 16;
 
 /// A pixel with more rays than this gets no more; the rest counts as lost light. It bounds the time that a pixel takes, and
-/// what its generation takes of memory: a ray has 16 numbers of 8 bytes, so 34 MB a queue.
+/// what its generation takes of memory: a ray has 16 numbers of 8 bytes, and twice as many children may be made before they
+/// are counted, in columns of a power of two: 134 MB a queue at most.
 const RAYS_PER_PIXEL: u32 = 1 << 18;
 
 /// Sees every generation when it is done, with its rays, hits and contributions.

@@ -293,8 +293,11 @@ impl World {
         let mut everything = (0..shapes.count()).map(|i| shapes.bounds(i)).fold(corners, Bounds::union);
         let mut boxes = Vec::with_capacity(parts.placed.len());
         for (mesh, name, model, map) in &parts.placed {
-            let bounds = Bounds::of(parts.models[*model].vertices.iter().map(|&v| map.apply(v)));
-            if !(bounds.farthest() <= LARGEST_NUMBER || parts.models[*model].faces.is_empty()) {
+            let Triangles { vertices, faces } = &parts.models[*model];
+            // Vertices of no face may lie anywhere, and must not make the boxes of others larger.
+            let vertices = if faces.is_empty() { &[] } else { vertices.as_slice() };
+            let bounds = Bounds::of(vertices.iter().map(|&v| map.apply(v)));
+            if !(bounds.farthest() <= LARGEST_NUMBER || faces.is_empty()) {
                 return Err(problem(*mesh, format!("an instance of mesh `{name}` reaches beyond 1e15")));
             }
             everything = everything.union(bounds);

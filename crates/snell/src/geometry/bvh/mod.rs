@@ -11,6 +11,7 @@ mod node;
 mod packet;
 mod primitives;
 mod single;
+mod together;
 
 pub use build::Quality;
 pub use instance::Instance;

@@ -56,8 +56,9 @@ pub(super) const TRIANGLE: usize = 10;
 pub(super) struct Primitives {
     /// The leaves' columns, and some zeros so that the last one can be read in full lanes.
     pub numbers: Vec<f64>,
-    /// By triangle: the place of its first number, and the distance to the next ones.
-    places: Vec<(u32, u32)>,
+    /// By triangle: the place of its first number, and in the last four bits the distance to the next ones, which is at
+    /// most 8.
+    places: Vec<u64>,
     /// The id of the first triangle.
     spheres: usize,
 }
@@ -68,7 +69,7 @@ impl Primitives {
         // Triangles are numbered from `first` to before `last`, then instances.
         let (first, last) = (shapes.spheres.len(), shapes.spheres.len() + shapes.faces.len());
         let mut jobs = Vec::with_capacity(tree.leaves.len());
-        let mut places = vec![(0, 0); shapes.faces.len()];
+        let mut places = vec![0; shapes.faces.len()];
         let mut count = 0;
         for child in tree.nodes.iter_mut().flat_map(|node| &mut node.child) {
             let Kind::Leaf(leaf) = child.kind() else { continue };
@@ -80,7 +81,8 @@ impl Primitives {
                 Block { at: count, spheres: spheres.len(), triangles: triangles.len(), instances: instances.len() };
             *child = Child::block(block);
             for (i, &id) in triangles.iter().enumerate() {
-                places[id as usize - first] = ((count + SPHERE * spheres.len() + i) as u32, triangles.len() as u32);
+                places[id as usize - first] =
+                    ((count + SPHERE * spheres.len() + i) as u64) << 4 | triangles.len() as u64;
             }
             jobs.push((block, ids));
             count += SPHERE * spheres.len() + TRIANGLE * triangles.len() + instances.len();
@@ -92,8 +94,9 @@ impl Primitives {
 
     /// The corners of a triangle.
     pub fn corners(&self, id: usize) -> [Vec3; 3] {
-        let (at, stride) = self.places[id - self.spheres];
-        let number = |column: u32| self.numbers[(at + column * stride) as usize];
+        let place = self.places[id - self.spheres];
+        let (at, stride) = ((place >> 4) as usize, (place & 15) as usize);
+        let number = |column: usize| self.numbers[at + column * stride];
         [0, 3, 6].map(|first| Vec3::new(number(first), number(first + 1), number(first + 2)))
     }
 
