@@ -288,6 +288,10 @@ impl World {
         };
         let Triangles { vertices, faces } = &parts.triangles;
         let shapes = Shapes { spheres: &self.spheres, vertices, faces, instances: &[] };
+        if shapes.count() + parts.placed.len() >= 1 << 31 {
+            let message = "more than 2 billion spheres and triangles".to_owned();
+            return Err(Problem { place: vec![Step::from("mesh")], message, help: None });
+        }
         // Rays start on surfaces or on the image plane; no ray origin is farther from a primitive than this.
         let corners = Bounds::of(self.camera.corners());
         let mut everything = (0..shapes.count()).map(|i| shapes.bounds(i)).fold(corners, Bounds::union);

@@ -100,7 +100,7 @@ impl Bvh {
     /// machine has cores.
     pub fn build(shapes: &Shapes<'_>, models: Vec<Self>, reach: f64, quality: Quality, threads: usize) -> Self {
         let padded = |i| OuterBox::around(&shapes.bounds(i), reach * MARGIN);
-        let threads = if shapes.count() < WORTH_THREADS { 1 } else { threads };
+        let threads = if shapes.count() < WORTH_THREADS { 1 } else { threads.min(shapes.count() / WORTH_THREADS + 1) };
         let (tree, primitives) = threads::share(threads, |parallel| {
             let mut tree = build::build(shapes.count(), padded, quality, parallel);
             let primitives = Primitives::new(shapes, &mut tree, parallel);
@@ -289,6 +289,20 @@ mod tests {
             let dir = (target - origin).unit();
             prop_assume!(dir.is_finite());
             finds_the_same(&Shapes { vertices: &corners, faces: &[[0, 1, 2]], ..Shapes::default() }, origin, dir);
+        }
+
+        /// In the plane of a triangle the edge functions are noise.
+        #[test]
+        fn a_ray_in_the_plane_of_a_triangle_finds_the_same(
+            corners in prop::array::uniform3(prop::array::uniform3(-9..9i32)),
+            steps in prop::array::uniform4(-5..6i32),
+        ) {
+            let [a, b, c] = corners.map(|p| Vec3::from(p.map(f64::from)));
+            let [to_b, to_c, from_b, from_c] = steps.map(f64::from);
+            let origin = a + (b - a) * from_b + (c - a) * from_c;
+            let dir = ((b - a) * to_b + (c - a) * to_c).unit();
+            prop_assume!(dir.is_finite() && triangle::normal([a, b, c]).is_finite());
+            finds_the_same(&Shapes { vertices: &[a, b, c], faces: &[[0, 1, 2]], ..Shapes::default() }, origin, dir);
         }
 
         /// Enough primitives for several levels, and many rays at the same distance from two of them.
