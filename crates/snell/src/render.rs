@@ -93,18 +93,24 @@ pub fn render(world: &World, options: &Options<'_>) -> Result<Rendered, RenderEr
     if !fits(crop.x, crop.width, size[0]) || !fits(crop.y, crop.height, size[1]) {
         return Err(RenderError::CropOutside { crop, size });
     }
+    let mut film = Film::new(size, crop)?;
+    // A tile fits into an array index, and so does a row of tiles, as the film does.
+    let rows = usize::try_from(u64::from(options.tile_size.max(1)) * u64::from(crop.width)).unwrap_or(usize::MAX);
+    let bands = film.pixels.chunks_mut(rows).zip(film.finished.chunks_mut(rows));
     let shared = Shared {
         world,
         options,
         crop,
         next_tile: AtomicU64::new(0),
         rays: AtomicU64::new(0),
-        result: Mutex::new(Rendered { film: Film::new(size, crop)?, statistics: Statistics::default() }),
+        bands: bands.map(|(pixels, finished)| Mutex::new(Band { pixels, finished })).collect(),
+        statistics: Mutex::new(Statistics::default()),
         pixels: AtomicU64::new(0),
     };
     shared.work();
     // A poisoned lock means that a worker panicked, which rayon has already passed on.
-    Ok(shared.result.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner))
+    let statistics = shared.statistics.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
+    Ok(Rendered { film, statistics })
 }
 
 /// Traces one pixel, column and row from the top left, and writes down every ray. The sum of the tree is the film's value,
@@ -118,14 +124,21 @@ pub fn trace_pixel(world: &World, x: u32, y: u32) -> Option<(Rgb, RayTree)> {
 }
 
 /// What one thread does.
-struct Worker<'a>(&'a Shared<'a>);
+struct Worker<'a, 'b>(&'a Shared<'b>);
 
-impl Kernel for Worker<'_> {
+impl Kernel for Worker<'_, '_> {
     type Output = ();
     #[inline(always)]
     fn run<L: Lanes>(self) {
         self.0.worker::<L>();
     }
+}
+
+/// The part of the film in one row of tiles. Tiles are taken column by column, so that threads seldom want the same one:
+/// touching new memory takes long, and would keep the others waiting.
+struct Band<'a> {
+    pixels: &'a mut [Rgb],
+    finished: &'a mut [bool],
 }
 
 struct Shared<'a> {
@@ -135,7 +148,9 @@ struct Shared<'a> {
     next_tile: AtomicU64,
     rays: AtomicU64,
     pixels: AtomicU64,
-    result: Mutex<Rendered>,
+    /// The film, by rows of tiles.
+    bands: Vec<Mutex<Band<'a>>>,
+    statistics: Mutex<Statistics>,
 }
 
 impl Shared<'_> {
@@ -158,7 +173,7 @@ impl Shared<'_> {
         let cancel = self.options.cancel;
         let mut tracer = Tracer::<L, ()>::new(self.world, cancel, ());
         let (size, tiles) = (self.tile_size(), self.tiles());
-        let columns = u64::from(self.crop.width).div_ceil(size);
+        let rows = self.bands.len() as u64;
         let mut pixels = Vec::new();
         let mut rays_before = 0;
         loop {
@@ -166,7 +181,7 @@ impl Shared<'_> {
             if tile >= tiles || cancel.is_some_and(|c| c.load(Ordering::Relaxed)) {
                 break;
             }
-            let (left, top) = ((tile % columns) * size, (tile / columns) * size);
+            let (left, top) = ((tile / rows) * size, (tile % rows) * size);
             let right = (left + size).min(u64::from(self.crop.width));
             let bottom = (top + size).min(u64::from(self.crop.height));
             pixels.clear();
@@ -174,24 +189,23 @@ impl Shared<'_> {
                 pixels.extend((left..right).map(|x| (self.crop.x + x as u32, self.crop.y + y as u32)));
             }
             let Some(radiance) = tracer.trace(&pixels) else { break };
-            self.store(left as usize, top as usize, (right - left) as usize, radiance);
+            self.store((tile % rows) as usize, left as usize, (right - left) as usize, radiance);
             let rays = tracer.statistics.rays.total();
             self.report(pixels.len() as u64, rays - rays_before);
             rays_before = rays;
         }
-        if let Ok(mut result) = self.result.lock() {
-            result.statistics.merge(&tracer.statistics);
+        if let Ok(mut statistics) = self.statistics.lock() {
+            statistics.merge(&tracer.statistics);
         }
     }
 
     /// Stores the pixels of a tile, row by row.
-    fn store(&self, left: usize, top: usize, width: usize, radiance: &[Rgb]) {
-        let Ok(mut result) = self.result.lock() else { return };
-        let film = &mut result.film;
+    fn store(&self, band: usize, left: usize, width: usize, radiance: &[Rgb]) {
+        let Ok(mut band) = self.bands[band].lock() else { return };
         for (row, colors) in radiance.chunks(width).enumerate() {
-            let start = (top + row) * film.width() + left;
-            film.pixels[start..start + width].copy_from_slice(colors);
-            film.finished[start..start + width].fill(true);
+            let start = row * self.crop.width as usize + left;
+            band.pixels[start..start + width].copy_from_slice(colors);
+            band.finished[start..start + width].fill(true);
         }
     }
 
