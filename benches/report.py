@@ -185,8 +185,8 @@ def kernels(section: dict) -> str:
     parts = [
         "## Kernels, trees, rays, pictures\n",
         heading(section),
-        "One thread. Median, its 95 % confidence interval, and the time for one ray, primitive or pixel. Kernels with\n"
-        "several lanes work on as many rays in a call.",
+        "One thread. Median, its 95 % confidence interval, and the time for one ray, primitive or pixel. A kernel\n"
+        "works on 1024 rays in a call.",
         "",
         table(["what", "median", "95 %", "for one"], rows),
     ]
