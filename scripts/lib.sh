@@ -14,14 +14,14 @@ absent() {
     printf '%s is not installed, so it is left out. To have it:   %s\n' "$1" "$2" >&2
 }
 
-# The Rust toolchain that rust-toolchain.toml names, with its components; the WASM target too if asked for.
+# The Rust toolchain that rust-toolchain.toml names, with its components, and the standard library for these targets.
 need_rust() {
-    local channel
+    local channel target
     channel=$(sed -n 's/^channel = "\(.*\)"/\1/p' rust-toolchain.toml)
     if command -v rustup >/dev/null; then
         local install=(rustup toolchain install "$channel" --profile minimal --component clippy --component rustfmt)
-        [ "${1:-}" != wasm ] || install+=(--target wasm32-unknown-unknown)
-        if ! complete_toolchain "$channel" "${1:-}"; then
+        for target in "$@"; do install+=(--target "$target"); done
+        if ! complete_toolchain "$channel" "$@"; then
             printf 'Installing Rust %s ...\n' "$channel" >&2
             "${install[@]}" --no-self-update >&2 || missing "the Rust toolchain $channel" "${install[*]}"
         fi
@@ -29,17 +29,22 @@ need_rust() {
         missing "Rust $channel" 'sudo apt-get install rustup   (or install rustup as rust-lang.org describes)'
     elif ! cargo clippy --version >/dev/null 2>&1 || ! cargo fmt --version >/dev/null 2>&1; then
         missing 'clippy and rustfmt' 'sudo apt-get install rustup   (or install rustup as rust-lang.org describes)'
-    elif [ "${1:-}" = wasm ] && [ ! -d "$(rustc --print target-libdir --target wasm32-unknown-unknown)" ]; then
-        missing 'the Rust standard library for wasm32-unknown-unknown' 'sudo apt-get install rustup'
+    else
+        for target in "$@"; do
+            [ -d "$(rustc --print target-libdir --target "$target")" ] ||
+                missing "the Rust standard library for $target" 'sudo apt-get install rustup'
+        done
     fi
     command -v cc >/dev/null || missing 'a linker (cc)' 'sudo apt-get install gcc libc6-dev'
 }
 
 complete_toolchain() {
-    local parts
+    local parts target
     parts=$(rustup component list --toolchain "$1" --installed 2>/dev/null) || return 1
     grep -q '^clippy' <<<"$parts" && grep -q '^rustfmt' <<<"$parts" || return 1
-    [ "$2" != wasm ] || grep -q '^rust-std-wasm32-unknown-unknown' <<<"$parts"
+    for target in "${@:2}"; do
+        grep -q "^rust-std-$target" <<<"$parts" || return 1
+    done
 }
 
 need_plain_python() {

@@ -11,7 +11,7 @@ stage() {
     times+=("$(printf '%5d s  %s' $((SECONDS - start)) "$name")")
 }
 
-need_tools() { need_rust wasm && need_python && need_node; }
+need_tools() { need_rust wasm32-unknown-unknown aarch64-unknown-linux-gnu && need_python && need_node; }
 oracle() { SNELL=$PWD/target/ci/snell .venv/bin/python -m pytest -q tests; }
 documentation() { RUSTDOCFLAGS='-D warnings' cargo doc --locked --quiet --workspace --no-deps --profile ci; }
 # An intrinsic that is a function of its own was called from code without the instructions of its width: each operation
@@ -49,6 +49,7 @@ stage 'Rust tests' cargo test --locked --quiet --workspace --profile ci
 stage 'Python tests: the slow oracle, the schema' oracle
 stage 'documentation' documentation
 stage 'fuzz targets compile' cargo check --locked --quiet --manifest-path fuzz/Cargo.toml --target-dir target/fuzz
+stage 'the library for ARM' cargo check --locked --quiet --package snell --target aarch64-unknown-linux-gnu --profile ci
 stage 'the same bits in WASM' same_bits_in_wasm
 
 printf '\n── all passed\n'

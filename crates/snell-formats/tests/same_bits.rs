@@ -226,3 +226,11 @@ fn a_scene_survives_being_written_to_the_bit() {
     let text = snell_formats::scene_file::to_text(&scene, Syntax::Json).unwrap();
     assert!(parse(&Source::new("crowd", text), Syntax::Json).unwrap() == scene);
 }
+
+#[test]
+fn a_scene_that_a_file_cannot_hold_is_not_written() {
+    for syntax in [Syntax::Toml, Syntax::Json] {
+        let refused = snell_formats::scene_file::to_text(&instances(0.0, true), syntax).unwrap_err();
+        assert!(refused.to_string().contains("mesh[0] has instances"), "{refused}");
+    }
+}

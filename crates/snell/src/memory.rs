@@ -7,7 +7,7 @@ use bytemuck::Zeroable;
 /// So many zeros, or `None` where there is not so much memory.
 ///
 /// The system hands out zeroed memory when it is first touched, so this takes no time; and in pages of 2 megabytes
-/// instead of 4 kilobytes where it can, which saves most of the time that touching it would take.
+/// instead of 4 kilobytes where it can, of which there are far fewer to ask for.
 pub(crate) fn zeros<T: Zeroable>(count: usize) -> Option<Vec<T>> {
     let values = bytemuck::allocation::try_zeroed_vec(count).ok()?;
     #[cfg(target_os = "linux")]

@@ -15,6 +15,21 @@
 //! [`LaneWidth`] chooses at run time. Kernels are `#[inline(always)]` down to the last call, so that they are compiled into
 //! [`Lanes::call`], the one function with the instructions of its width.
 
+/// Operators of vector types, an intrinsic each. For modules that say why their intrinsics may be called.
+macro_rules! operators {
+    ($type:ident: $($operation:ident $method:ident $intrinsic:ident),*) => {$(
+        impl $operation for $type {
+            type Output = Self;
+            #[inline(always)]
+            #[allow(unused_unsafe, reason = "those of WASM are safe")]
+            fn $method(self, other: Self) -> Self {
+                // SAFETY: the machine has the instruction, see the top of the file.
+                Self(unsafe { $intrinsic(self.0, other.0) })
+            }
+        }
+    )*};
+}
+
 mod array;
 mod columns;
 pub mod elementary;

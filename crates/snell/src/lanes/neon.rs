@@ -1,4 +1,5 @@
-//! NEON: two numbers. Every 64-bit ARM has it, so nothing has to be asked at run time.
+//! NEON: two numbers. Every 64-bit ARM has it, so nothing has to be asked at run time, and its intrinsics may be called
+//! anywhere.
 
 #![allow(unsafe_code, reason = "intrinsics; each block says why it is sound")]
 #![allow(clippy::wildcard_imports, reason = "intrinsics come by the dozen, and their names say where from")]
@@ -14,25 +15,15 @@ pub(crate) struct Neon(float64x2_t);
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct NeonMask(uint64x2_t);
 
-macro_rules! binary {
-    ($type:ident: $($operation:ident $method:ident $intrinsic:ident),*) => {$(
-        impl $operation for $type {
-            type Output = Self;
-            #[inline(always)]
-            fn $method(self, other: Self) -> Self {
-                Self($intrinsic(self.0, other.0))
-            }
-        }
-    )*};
-}
-binary!(Neon: Add add vaddq_f64, Sub sub vsubq_f64, Mul mul vmulq_f64, Div div vdivq_f64);
-binary!(NeonMask: BitAnd bitand vandq_u64, BitOr bitor vorrq_u64);
+operators!(Neon: Add add vaddq_f64, Sub sub vsubq_f64, Mul mul vmulq_f64, Div div vdivq_f64);
+operators!(NeonMask: BitAnd bitand vandq_u64, BitOr bitor vorrq_u64);
 
 impl Neg for Neon {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        Self(vnegq_f64(self.0))
+        // SAFETY: every 64-bit ARM has the instruction.
+        Self(unsafe { vnegq_f64(self.0) })
     }
 }
 
@@ -40,7 +31,8 @@ impl Not for NeonMask {
     type Output = Self;
     #[inline(always)]
     fn not(self) -> Self {
-        Self(veorq_u64(self.0, vdupq_n_u64(!0)))
+        // SAFETY: every 64-bit ARM has the instruction.
+        Self(unsafe { veorq_u64(self.0, vdupq_n_u64(!0)) })
     }
 }
 
@@ -48,11 +40,14 @@ impl Mask for NeonMask {
     #[inline(always)]
     fn from_bits(bits: u32) -> Self {
         let lane = |i: u32| if bits >> i & 1 == 1 { !0 } else { 0 };
-        Self(vsetq_lane_u64::<1>(lane(1), vdupq_n_u64(lane(0))))
+        // SAFETY: every 64-bit ARM has the instruction.
+        Self(unsafe { vsetq_lane_u64::<1>(lane(1), vdupq_n_u64(lane(0))) })
     }
     #[inline(always)]
     fn bits(self) -> u32 {
-        (vgetq_lane_u64::<0>(self.0) & 1 | vgetq_lane_u64::<1>(self.0) & 2) as u32
+        // SAFETY: every 64-bit ARM has the instruction.
+        let lanes = unsafe { [vgetq_lane_u64::<0>(self.0), vgetq_lane_u64::<1>(self.0)] };
+        (lanes[0] & 1 | lanes[1] & 2) as u32
     }
 }
 
@@ -65,7 +60,8 @@ impl Lanes for Neon {
     }
     #[inline(always)]
     fn splat(value: f64) -> Self {
-        Self(vdupq_n_f64(value))
+        // SAFETY: every 64-bit ARM has the instruction.
+        Self(unsafe { vdupq_n_f64(value) })
     }
     #[inline(always)]
     fn from_fn(value: impl FnMut(usize) -> f64) -> Self {
@@ -73,7 +69,8 @@ impl Lanes for Neon {
     }
     #[inline(always)]
     fn lane(self, lane: usize) -> f64 {
-        if lane == 0 { vgetq_lane_f64::<0>(self.0) } else { vgetq_lane_f64::<1>(self.0) }
+        // SAFETY: every 64-bit ARM has the instruction.
+        unsafe { if lane == 0 { vgetq_lane_f64::<0>(self.0) } else { vgetq_lane_f64::<1>(self.0) } }
     }
     #[inline(always)]
     fn load(values: &[f64]) -> Self {
@@ -93,26 +90,32 @@ impl Lanes for Neon {
     }
     #[inline(always)]
     fn compress(self, mask: NeonMask) -> Self {
-        if mask.bits() == 2 { Self(vdupq_laneq_f64::<1>(self.0)) } else { self }
+        // SAFETY: every 64-bit ARM has the instruction.
+        if mask.bits() == 2 { Self(unsafe { vdupq_laneq_f64::<1>(self.0) }) } else { self }
     }
     #[inline(always)]
     fn sqrt(self) -> Self {
-        Self(vsqrtq_f64(self.0))
+        // SAFETY: every 64-bit ARM has the instruction.
+        Self(unsafe { vsqrtq_f64(self.0) })
     }
     #[inline(always)]
     fn lt(self, other: Self) -> NeonMask {
-        NeonMask(vcltq_f64(self.0, other.0))
+        // SAFETY: every 64-bit ARM has the instruction.
+        NeonMask(unsafe { vcltq_f64(self.0, other.0) })
     }
     #[inline(always)]
     fn le(self, other: Self) -> NeonMask {
-        NeonMask(vcleq_f64(self.0, other.0))
+        // SAFETY: every 64-bit ARM has the instruction.
+        NeonMask(unsafe { vcleq_f64(self.0, other.0) })
     }
     #[inline(always)]
     fn eq(self, other: Self) -> NeonMask {
-        NeonMask(vceqq_f64(self.0, other.0))
+        // SAFETY: every 64-bit ARM has the instruction.
+        NeonMask(unsafe { vceqq_f64(self.0, other.0) })
     }
     #[inline(always)]
     fn select(mask: NeonMask, yes: Self, no: Self) -> Self {
-        Self(vbslq_f64(mask.0, yes.0, no.0))
+        // SAFETY: every 64-bit ARM has the instruction.
+        Self(unsafe { vbslq_f64(mask.0, yes.0, no.0) })
     }
 }

@@ -14,19 +14,8 @@ pub(crate) struct Simd128(v128);
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Simd128Mask(v128);
 
-macro_rules! binary {
-    ($type:ident: $($operation:ident $method:ident $intrinsic:ident),*) => {$(
-        impl $operation for $type {
-            type Output = Self;
-            #[inline(always)]
-            fn $method(self, other: Self) -> Self {
-                Self($intrinsic(self.0, other.0))
-            }
-        }
-    )*};
-}
-binary!(Simd128: Add add f64x2_add, Sub sub f64x2_sub, Mul mul f64x2_mul, Div div f64x2_div);
-binary!(Simd128Mask: BitAnd bitand v128_and, BitOr bitor v128_or);
+operators!(Simd128: Add add f64x2_add, Sub sub f64x2_sub, Mul mul f64x2_mul, Div div f64x2_div);
+operators!(Simd128Mask: BitAnd bitand v128_and, BitOr bitor v128_or);
 
 impl Neg for Simd128 {
     type Output = Self;

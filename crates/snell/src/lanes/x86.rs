@@ -58,23 +58,11 @@ pub(crate) struct Avx512(__m512d);
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Avx512Mask(__mmask8);
 
-macro_rules! binary {
-    ($type:ident: $($operation:ident $method:ident $intrinsic:ident),*) => {$(
-        impl $operation for $type {
-            type Output = Self;
-            #[inline(always)]
-            fn $method(self, other: Self) -> Self {
-                // SAFETY: the machine has the instruction, see the top of the file.
-                Self(unsafe { $intrinsic(self.0, other.0) })
-            }
-        }
-    )*};
-}
-binary!(Sse2: Add add _mm_add_pd, Sub sub _mm_sub_pd, Mul mul _mm_mul_pd, Div div _mm_div_pd);
-binary!(Avx2: Add add _mm256_add_pd, Sub sub _mm256_sub_pd, Mul mul _mm256_mul_pd, Div div _mm256_div_pd);
-binary!(Avx512: Add add _mm512_add_pd, Sub sub _mm512_sub_pd, Mul mul _mm512_mul_pd, Div div _mm512_div_pd);
-binary!(Sse2Mask: BitAnd bitand _mm_and_pd, BitOr bitor _mm_or_pd);
-binary!(Avx2Mask: BitAnd bitand _mm256_and_pd, BitOr bitor _mm256_or_pd);
+operators!(Sse2: Add add _mm_add_pd, Sub sub _mm_sub_pd, Mul mul _mm_mul_pd, Div div _mm_div_pd);
+operators!(Avx2: Add add _mm256_add_pd, Sub sub _mm256_sub_pd, Mul mul _mm256_mul_pd, Div div _mm256_div_pd);
+operators!(Avx512: Add add _mm512_add_pd, Sub sub _mm512_sub_pd, Mul mul _mm512_mul_pd, Div div _mm512_div_pd);
+operators!(Sse2Mask: BitAnd bitand _mm_and_pd, BitOr bitor _mm_or_pd);
+operators!(Avx2Mask: BitAnd bitand _mm256_and_pd, BitOr bitor _mm256_or_pd);
 
 impl BitAnd for Avx512Mask {
     type Output = Self;

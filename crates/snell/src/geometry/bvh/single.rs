@@ -26,8 +26,8 @@ impl Bvh {
     /// Follows some rays of a packet from a node on, each its own way, near boxes first. With `ANY` a ray stops at its first
     /// hit. Says which rays found one.
     ///
-    /// A ray spends most of its time waiting for memory. So several are on their way in turns: while the next node of one
-    /// is being fetched, the others make a step.
+    /// A ray alone often waits for memory. So several are on their way in turns: while the next node of one is being
+    /// fetched, the others make a step.
     #[inline(always)]
     pub(super) fn follow<L: Lanes, const ANY: bool>(
         &self,
