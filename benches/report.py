@@ -21,8 +21,8 @@ HOW = """\
 A ratio is taken within a round, in which every program is asked once; shown are the median of the rounds, the smallest
 and the largest, and the ratio of everybody's best times, which other jobs disturb least. Rows 1 to 5 say how many times
 as fast Snell is, one thread against one; rows 6 and 8 are Snell's share of the other's, so less is better. For POV-Ray
-the time is the trace time that it reports itself, for Snell that of `render::render`, the second of two in a row, so that
-fetching memory from the system is not in it. For rays it is the time from
+the time is the trace time that it reports itself, for Snell that of `render::render_into`, into the memory of a film that
+is there, so that fetching it from the system is not in it. For rays it is the time from
 columns of rays to columns of hits; both programs get the same rays and the same mesh, in numbers that `f32` can hold.
 Embree computes in `f32`, Snell in `f64`.
 """

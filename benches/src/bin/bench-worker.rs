@@ -4,7 +4,7 @@
 //! | line | what | answer |
 //! | --- | --- | --- |
 //! | `build SCENE THREADS` | compiles the scene | `seconds`, `bytes`, `primitives` |
-//! | `frame SCENE SIZE DEPTH THREADS` | renders a picture twice, and times the second | `seconds`, `rays`, `peak_bytes` of the process so far |
+//! | `frame SCENE SIZE DEPTH THREADS` | renders a picture twice into the same memory, and times the second | `seconds`, `rays`, `peak_bytes` of the process so far |
 //! | `rays KIND THREADS` | traces `primary`, `shadow` or `bounce` rays on the knot | `seconds`, `rays`, `hits`, `mean_t` |
 //! | `export DIR` | writes the knot and its rays for `peers/embree.cpp` | `triangles` |
 //! | `scene SCENE SIZE FILE` | saves the scene as JSON | `primitives` |
@@ -12,7 +12,7 @@
 #![allow(clippy::print_stdout, reason = "its answers go there")]
 
 use snell::geometry::TriangleMesh;
-use snell::render::{Options, render};
+use snell::render::{Options, render, render_into};
 use snell::world::World;
 use snell_bench::rays::{Found, Kind, RaySets};
 use snell_bench::{build, knot, scenes};
@@ -91,12 +91,12 @@ impl Worker {
         let world = self.worlds.get_mut(&key).ok_or("the scene is gone")?;
         world.render.max_depth = depth;
         let options = Options { threads, ..Options::default() };
-        // The first one brings back the memory that the system, or the host of a virtual machine, has taken meanwhile.
-        drop(render(world, &options).map_err(|e| e.to_string())?);
+        // The first one fetches the memory.
+        let mut film = render(world, &options).map_err(|e| e.to_string())?.film;
         let start = Instant::now();
-        let done = render(world, &options).map_err(|e| e.to_string())?;
+        let statistics = render_into(&mut film, world, &options).map_err(|e| e.to_string())?;
         let time = start.elapsed();
-        let rays = done.statistics.rays.total();
+        let rays = statistics.rays.total();
         Ok(format!("{}, \"rays\": {rays}, \"peak_bytes\": {}}}", timed(time), peak_bytes()))
     }
 

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use snell::film::{Crop, Film, Rgb};
-use snell::render::{LaneWidth, Options, render, trace_pixel};
+use snell::render::{LaneWidth, Options, render, render_into, trace_pixel};
 use snell::scene::{Integrator, Scene, Transform};
 use snell::world::World;
 use snell_formats::scene_file::{Syntax, parse};
@@ -211,12 +211,32 @@ fn cancelling_keeps_what_is_done() {
     let world = World::new(&lecture("lecture/default", 64)).unwrap();
     let whole = picture(&world, &Options::default());
     let cancel = AtomicBool::new(false);
-    let progress = |p: snell::render::Progress| cancel.store(p.pixels >= 512, Ordering::Relaxed);
+    let progress = |p: snell::render::Progress| cancel.store(p.pixels >= 2048, Ordering::Relaxed);
     let options = Options { threads: 1, progress: Some(&progress), cancel: Some(&cancel), ..Options::default() };
-    let part = picture(&world, &options);
-    assert_eq!(part.finished.iter().filter(|&&f| f).count(), 512);
-    for (i, &finished) in part.finished.iter().enumerate() {
-        assert_eq!(part.pixels[i], if finished { whole.pixels[i] } else { Rgb::gray(0.0) });
+    // Into new memory, and into that of another picture, which must not shine through.
+    let mut again = whole.clone();
+    render_into(&mut again, &world, &options).unwrap();
+    cancel.store(false, Ordering::Relaxed);
+    for part in [picture(&world, &options), again] {
+        assert_eq!(part.finished.iter().filter(|&&f| f).count(), 2048);
+        for (i, &finished) in part.finished.iter().enumerate() {
+            assert_eq!(part.pixels[i], if finished { whole.pixels[i] } else { Rgb::gray(0.0) });
+        }
+    }
+}
+
+#[test]
+fn a_film_is_used_again() {
+    let worlds = [("lecture/default", 64), ("lecture/quarter", 64), ("lecture/default", 40)];
+    let worlds = worlds.map(|(name, size)| World::new(&lecture(name, size)).unwrap());
+    let mut film = picture(&worlds[0], &Options::default());
+    let crop = Some(Crop { x: 3, y: 20, width: 40, height: 17 });
+    for options in [Options::default(), Options { crop, ..Options::default() }] {
+        for world in &worlds {
+            if render_into(&mut film, world, &options).is_ok() {
+                assert!(film == picture(world, &options));
+            }
+        }
     }
 }
 

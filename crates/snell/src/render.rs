@@ -8,7 +8,7 @@ use crate::trace::{RayTree, Recorder, Statistics, Tracer};
 use crate::world::World;
 use std::fmt;
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 
 /// How to render; nothing here changes a bit of the picture but `crop`, which cuts it.
 #[derive(Clone, Copy)]
@@ -29,7 +29,7 @@ pub struct Options<'a> {
 
 impl Default for Options<'_> {
     fn default() -> Self {
-        Self { threads: 0, tile_size: 16, lanes: LaneWidth::best(), crop: None, progress: None, cancel: None }
+        Self { threads: 0, tile_size: 32, lanes: LaneWidth::best(), crop: None, progress: None, cancel: None }
     }
 }
 
@@ -86,6 +86,17 @@ pub enum RenderError {
 /// # Errors
 /// When the film does not fit into memory, or the crop not into the picture.
 pub fn render(world: &World, options: &Options<'_>) -> Result<Rendered, RenderError> {
+    let mut film = Film::new(world.camera.size, Crop { x: 0, y: 0, width: 0, height: 0 })?;
+    let statistics = render_into(&mut film, world, options)?;
+    Ok(Rendered { film, statistics })
+}
+
+/// Renders a picture in place of another one. Where both are of the same size its memory is used again: fetching as much
+/// from the system takes a tenth of the time of a simple picture.
+///
+/// # Errors
+/// As [`render`]; the film may be of any size then.
+pub fn render_into(film: &mut Film, world: &World, options: &Options<'_>) -> Result<Statistics, RenderError> {
     let size = world.camera.size;
     let crop = options.crop.unwrap_or(Crop { x: 0, y: 0, width: size[0], height: size[1] });
     let fits =
@@ -93,7 +104,7 @@ pub fn render(world: &World, options: &Options<'_>) -> Result<Rendered, RenderEr
     if !fits(crop.x, crop.width, size[0]) || !fits(crop.y, crop.height, size[1]) {
         return Err(RenderError::CropOutside { crop, size });
     }
-    let mut film = Film::new(size, crop)?;
+    film.start_again(size, crop)?;
     // A tile fits into an array index, and so does a row of tiles, as the film does.
     let rows = usize::try_from(u64::from(options.tile_size.max(1)) * u64::from(crop.width)).unwrap_or(usize::MAX);
     let bands = film.pixels.chunks_mut(rows).zip(film.finished.chunks_mut(rows));
@@ -101,16 +112,19 @@ pub fn render(world: &World, options: &Options<'_>) -> Result<Rendered, RenderEr
         world,
         options,
         crop,
-        next_tile: AtomicU64::new(0),
+        next_band: AtomicUsize::new(0),
         rays: AtomicU64::new(0),
-        bands: bands.map(|(pixels, finished)| Mutex::new(Band { pixels, finished })).collect(),
+        bands: bands.map(|(pixels, finished)| Band::new(pixels, finished)).collect(),
         statistics: Mutex::new(Statistics::default()),
         pixels: AtomicU64::new(0),
     };
     shared.work();
     // A poisoned lock means that a worker panicked, which rayon has already passed on.
     let statistics = shared.statistics.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
-    Ok(Rendered { film, statistics })
+    if options.cancel.is_some_and(|c| c.load(Ordering::Relaxed)) {
+        film.blacken_unfinished();
+    }
+    Ok(statistics)
 }
 
 /// Traces one pixel, column and row from the top left, and writes down every ray. The sum of the tree is the film's value,
@@ -118,7 +132,7 @@ pub fn render(world: &World, options: &Options<'_>) -> Result<Rendered, RenderEr
 pub fn trace_pixel(world: &World, x: u32, y: u32) -> Option<(Rgb, RayTree)> {
     let [width, height] = world.camera.size;
     let mut tracer = Tracer::<f64, _>::new(world, None, Recorder::default());
-    let pixel = (x < width && y < height).then_some([(x, y)])?;
+    let pixel = (x < width && y < height).then_some(Crop { x, y, width: 1, height: 1 })?;
     let radiance = tracer.trace(&pixel)?.first().copied()?;
     Some((radiance, tracer.observer.tree))
 }
@@ -134,29 +148,45 @@ impl Kernel for Worker<'_, '_> {
     }
 }
 
-/// The part of the film in one row of tiles. Tiles are taken column by column, so that threads seldom want the same one:
-/// touching new memory takes long, and would keep the others waiting.
+/// One row of tiles, and its part of the film.
+///
+/// A thread takes a band of its own and goes from left to right, so that the memory it touches is near; when no band is left,
+/// it helps the others.
 struct Band<'a> {
+    /// How many of its tiles have been taken, from the left.
+    taken: AtomicU64,
+    film: Mutex<BandOfFilm<'a>>,
+}
+
+struct BandOfFilm<'a> {
     pixels: &'a mut [Rgb],
     finished: &'a mut [bool],
+}
+
+impl<'a> Band<'a> {
+    fn new(pixels: &'a mut [Rgb], finished: &'a mut [bool]) -> Self {
+        Self { taken: AtomicU64::new(0), film: Mutex::new(BandOfFilm { pixels, finished }) }
+    }
 }
 
 struct Shared<'a> {
     world: &'a World,
     options: &'a Options<'a>,
     crop: Crop,
-    next_tile: AtomicU64,
+    /// The first band that nobody has taken.
+    next_band: AtomicUsize,
     rays: AtomicU64,
     pixels: AtomicU64,
-    /// The film, by rows of tiles.
-    bands: Vec<Mutex<Band<'a>>>,
+    /// From top to bottom.
+    bands: Vec<Band<'a>>,
     statistics: Mutex<Statistics>,
 }
 
 impl Shared<'_> {
     fn work(&self) {
         // More threads than tiles have nothing to do.
-        let most = usize::try_from(self.tiles()).unwrap_or(usize::MAX);
+        let tiles = self.columns().saturating_mul(self.bands.len() as u64);
+        let most = usize::try_from(tiles).unwrap_or(usize::MAX);
         threads::run(self.options.threads.min(most), || dispatch(self.options.lanes, Worker(self)));
     }
 
@@ -164,48 +194,50 @@ impl Shared<'_> {
         u64::from(self.options.tile_size.max(1))
     }
 
-    fn tiles(&self) -> u64 {
-        u64::from(self.crop.width).div_ceil(self.tile_size()) * u64::from(self.crop.height).div_ceil(self.tile_size())
+    /// Tiles in a band.
+    fn columns(&self) -> u64 {
+        u64::from(self.crop.width).div_ceil(self.tile_size())
     }
 
     #[inline(always)]
     fn worker<L: Lanes>(&self) {
-        let cancel = self.options.cancel;
-        let mut tracer = Tracer::<L, ()>::new(self.world, cancel, ());
-        let (size, tiles) = (self.tile_size(), self.tiles());
-        let rows = self.bands.len() as u64;
-        let mut pixels = Vec::new();
-        let mut rays_before = 0;
-        loop {
-            let tile = self.next_tile.fetch_add(1, Ordering::Relaxed);
-            if tile >= tiles || cancel.is_some_and(|c| c.load(Ordering::Relaxed)) {
-                break;
+        let mut tracer = Tracer::<L, ()>::new(self.world, self.options.cancel, ());
+        let own = std::iter::from_fn(|| Some(self.next_band.fetch_add(1, Ordering::Relaxed)));
+        for band in own.take_while(|&band| band < self.bands.len()).chain(0..self.bands.len()) {
+            while let Some(tile) = self.take_tile(band) {
+                let rays_before = tracer.statistics.rays.total();
+                let Some(radiance) = tracer.trace(&tile) else { break };
+                self.store(band, &tile, radiance);
+                let pixels = u64::from(tile.width) * u64::from(tile.height);
+                self.report(pixels, tracer.statistics.rays.total() - rays_before);
             }
-            let (left, top) = ((tile / rows) * size, (tile % rows) * size);
-            let right = (left + size).min(u64::from(self.crop.width));
-            let bottom = (top + size).min(u64::from(self.crop.height));
-            pixels.clear();
-            for y in top..bottom {
-                pixels.extend((left..right).map(|x| (self.crop.x + x as u32, self.crop.y + y as u32)));
-            }
-            let Some(radiance) = tracer.trace(&pixels) else { break };
-            self.store((tile % rows) as usize, left as usize, (right - left) as usize, radiance);
-            let rays = tracer.statistics.rays.total();
-            self.report(pixels.len() as u64, rays - rays_before);
-            rays_before = rays;
         }
         if let Ok(mut statistics) = self.statistics.lock() {
             statistics.merge(&tracer.statistics);
         }
     }
 
+    /// The next tile of a band, if there is one and nobody has cancelled.
+    fn take_tile(&self, band: usize) -> Option<Crop> {
+        let column = self.bands[band].taken.fetch_add(1, Ordering::Relaxed);
+        if column >= self.columns() || self.options.cancel.is_some_and(|c| c.load(Ordering::Relaxed)) {
+            return None;
+        }
+        let (size, crop) = (self.tile_size(), &self.crop);
+        let (left, top) = (column * size, band as u64 * size);
+        let width = size.min(u64::from(crop.width) - left) as u32;
+        let height = size.min(u64::from(crop.height) - top) as u32;
+        Some(Crop { x: crop.x + left as u32, y: crop.y + top as u32, width, height })
+    }
+
     /// Stores the pixels of a tile, row by row.
-    fn store(&self, band: usize, left: usize, width: usize, radiance: &[Rgb]) {
-        let Ok(mut band) = self.bands[band].lock() else { return };
+    fn store(&self, band: usize, tile: &Crop, radiance: &[Rgb]) {
+        let Ok(mut film) = self.bands[band].film.lock() else { return };
+        let (left, width) = ((tile.x - self.crop.x) as usize, tile.width as usize);
         for (row, colors) in radiance.chunks(width).enumerate() {
             let start = row * self.crop.width as usize + left;
-            band.pixels[start..start + width].copy_from_slice(colors);
-            band.finished[start..start + width].fill(true);
+            film.pixels[start..start + width].copy_from_slice(colors);
+            film.finished[start..start + width].fill(true);
         }
     }
 

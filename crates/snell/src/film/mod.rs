@@ -64,6 +64,25 @@ impl Film {
         Ok(Self { full_size, crop, pixels, finished })
     }
 
+    /// Makes it an unfinished film of this size, in the memory that it has if the size is the same. The colours of unfinished
+    /// pixels are of no meaning.
+    pub(crate) fn start_again(&mut self, full_size: [u32; 2], crop: Crop) -> Result<(), FilmTooLarge> {
+        if (self.crop.width, self.crop.height) == (crop.width, crop.height) {
+            (self.full_size, self.crop) = (full_size, crop);
+            self.finished.fill(false);
+        } else {
+            *self = Self::new(full_size, crop)?;
+        }
+        Ok(())
+    }
+
+    /// Makes all pixels black that are not finished.
+    pub(crate) fn blacken_unfinished(&mut self) {
+        for (pixel, _) in self.pixels.iter_mut().zip(&self.finished).filter(|(_, finished)| !**finished) {
+            *pixel = Rgb::black();
+        }
+    }
+
     /// Width of the part that this film holds, in pixels.
     pub fn width(&self) -> usize {
         self.crop.width as usize

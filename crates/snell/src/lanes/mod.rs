@@ -37,6 +37,7 @@ pub mod elementary;
 mod neon;
 mod pow;
 mod scalar;
+mod sort;
 #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
 mod wasm;
 mod width;
@@ -59,14 +60,20 @@ const TWO_TO_52: f64 = 4_503_599_627_370_496.0;
 /// No width is larger.
 pub(crate) const MAX_WIDTH: usize = 8;
 
-/// Tells the machine that four cache lines from this value on will soon be read, so that it fetches them while something
+/// A whole number that travels as `f64`, below 2^32: quicker than a conversion that asks whether it is one.
+#[inline(always)]
+pub(crate) fn index(number: f64) -> usize {
+    (number + TWO_TO_52).to_bits() as u32 as usize
+}
+
+/// Tells the machine that so many cache lines from this place on will soon be read, so that it fetches them while something
 /// else is done.
 #[inline(always)]
-pub(crate) fn prefetch<T>(values: &[T], index: usize) {
+pub(crate) fn prefetch<const LINES: usize>(start: *const u8) {
     #[cfg(target_arch = "x86_64")]
-    x86::prefetch(values, index);
+    x86::prefetch::<LINES>(start);
     #[cfg(not(target_arch = "x86_64"))]
-    let _ = (values, index);
+    let _ = start;
 }
 
 /// One yes or no per lane.
@@ -132,6 +139,11 @@ pub trait Lanes:
     fn load(values: &[f64]) -> Self;
     /// The first `WIDTH` of the values, converted without error; there must be as many.
     fn load_f32(values: &[f32]) -> Self;
+    /// `first`, `first + 1`, ...
+    #[inline(always)]
+    fn ramp(first: usize) -> Self {
+        Self::load(&[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]) + Self::splat(first as f64)
+    }
     /// Replaces the first `WIDTH` of the values; there must be as many.
     fn store(self, values: &mut [f64]);
     /// The lanes that the mask names, in their order, from lane 0 on; the others are of no meaning.
@@ -178,6 +190,14 @@ pub trait Lanes:
         let first = Self::from_fn(|lane| f64::from_bits(half(lane) << 52));
         let second = Self::from_fn(|lane| f64::from_bits((biased.lane(lane).to_bits() - half(lane)) << 52));
         self * first * second
+    }
+
+    /// Sorts the numbers that the bits of `named` name, none of which is negative or NaN, the largest first, and with each what
+    /// belongs to it. Numbers count, and come out, without the last three bits of their 53, and infinity as the largest number
+    /// below; what comes behind those that are named is of no meaning.
+    #[inline(always)]
+    fn sort_descending(named: u32, numbers: &[f64; 8], tags: &[u64; 8], sorted: (&mut [f64; 8], &mut [u64; 8])) {
+        sort::by_insertion(named, numbers, tags, sorted);
     }
 
     /// The largest of all lanes, none of which is NaN.
@@ -334,6 +354,45 @@ mod tests {
                 dispatch(width, TimesExp2(x, k));
             }
         }
+    }
+
+    struct Sort<'a>(u32, &'a [f64; 8]);
+
+    impl Kernel for Sort<'_> {
+        type Output = Vec<(f64, u64)>;
+        #[inline(always)]
+        fn run<L: Lanes>(self) -> Self::Output {
+            let Self(named, numbers) = self;
+            let (mut sorted, mut tags) = ([9.0; 8], [9; 8]);
+            L::sort_descending(named, numbers, &[10, 11, 12, 13, 14, 15, 16, 17], (&mut sorted, &mut tags));
+            sorted.into_iter().zip(tags).take(named.count_ones() as usize).collect()
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn every_width_sorts(
+            numbers in prop::array::uniform8(prop_oneof![0.0..9.0f64, (0..4u32).prop_map(f64::from), Just(f64::INFINITY)]),
+            named in 0..256u32,
+        ) {
+            let short = numbers.map(|x| f64::from_bits(x.min(f64::MAX).to_bits() & !7));
+            for width in LaneWidth::ALL {
+                let found = dispatch(width, Sort(named, &numbers));
+                prop_assert!(found.is_sorted_by(|a, b| a.0 >= b.0));
+                prop_assert!(found.iter().all(|&(x, tag)| x == short[tag as usize - 10]));
+                let tags = found.iter().fold(0, |bits, &(_, tag)| bits | 1 << (tag - 10));
+                prop_assert_eq!(tags, named, "all that are named, and no others");
+            }
+        }
+    }
+
+    #[test]
+    fn whole_numbers_are_indices() {
+        for number in [0, 1, 77, (1 << 31) + 1, u32::MAX] {
+            assert_eq!(index(f64::from(number)), number as usize);
+        }
+        let ramp = ArrayLanes::<4>::ramp(5);
+        assert_eq!([0, 1, 2, 3].map(|lane| ramp.lane(lane)), [5.0, 6.0, 7.0, 8.0]);
     }
 
     #[test]

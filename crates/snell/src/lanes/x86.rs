@@ -7,6 +7,7 @@
 #![allow(unsafe_code, reason = "intrinsics; each block says why it is sound")]
 #![allow(clippy::wildcard_imports, reason = "intrinsics come by the dozen, and their names say where from")]
 
+use super::sort::by_insertion;
 use super::{Kernel, LEAST, Lanes, Mask, ONE, TWO_TO_52};
 use std::arch::x86_64::*;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
@@ -29,13 +30,12 @@ pub(super) fn has_avx512() -> bool {
         && is_x86_feature_detected!("avx512bw")
 }
 
-/// Fetches four cache lines from this value on.
+/// Fetches some cache lines from this place on.
 #[inline(always)]
-pub(super) fn prefetch<T>(values: &[T], index: usize) {
-    let start = values.as_ptr().wrapping_add(index).cast::<i8>();
-    for line in 0..4 {
+pub(super) fn prefetch<const LINES: usize>(start: *const u8) {
+    for line in 0..LINES {
         // SAFETY: a prefetch reads nothing that could be seen, and no address makes it fail.
-        unsafe { _mm_prefetch::<_MM_HINT_T0>(start.wrapping_add(64 * line)) };
+        unsafe { _mm_prefetch::<_MM_HINT_T0>(start.wrapping_add(64 * line).cast()) };
     }
 }
 
@@ -130,7 +130,7 @@ macro_rules! lanes {
     (
         $type:ident($mask:ident), $width:literal, $has:expr, $features:literal, splat $splat:ident, load $load:ident,
         load_f32 $load_f32:ident, store $store:ident, sqrt $sqrt:ident, min $min:ident, max $max:ident,
-        neg $neg:ident, compare $compare:ident, select $select:ident, compress $compress:ident,
+        neg $neg:ident, compare $compare:ident, select $select:ident, compress $compress:ident, sort $sort:ident,
         integers $bits:ident $number:ident $splat64:ident $add64:ident $sub64:ident $and64:ident $or64:ident
         $shift_left:ident $shift_right:ident
     ) => {
@@ -217,6 +217,17 @@ macro_rules! lanes {
             fn select(mask: $mask, yes: Self, no: Self) -> Self {
                 // SAFETY: the machine has the instructions, see the top of the file.
                 Self(unsafe { $select(mask.0, yes.0, no.0) })
+            }
+            #[inline(always)]
+            #[allow(unused_unsafe, reason = "only one of these needs instructions")]
+            fn sort_descending(
+                named: u32,
+                numbers: &[f64; 8],
+                tags: &[u64; 8],
+                sorted: (&mut [f64; 8], &mut [u64; 8]),
+            ) {
+                // SAFETY: the machine has the instructions, see the top of the file.
+                unsafe { $sort(named, numbers, tags, sorted) }
             }
             // As the definitions in the trait, on the patterns of all lanes at once.
             #[inline(always)]
@@ -338,6 +349,44 @@ unsafe fn select_avx2(mask: __m256d, yes: __m256d, no: __m256d) -> __m256d {
     unsafe { _mm256_blendv_pd(no, yes, mask) }
 }
 
+/// A bitonic network (Batcher 1968) of six steps: each compares all numbers with another one, at a distance of 1, 2 or 4
+/// places, and keeps the larger where the bit of `larger` is 1. There is nothing in it that depends on the numbers, so
+/// nothing to predict.
+#[inline(always)]
+unsafe fn sort_avx512(
+    named: u32,
+    numbers: &[f64; 8],
+    tags: &[u64; 8],
+    (sorted, sorted_tags): (&mut [f64; 8], &mut [u64; 8]),
+) {
+    // SAFETY: see above; as many numbers are there.
+    unsafe {
+        // Infinity with a place in its last bits would be NaN.
+        let numbers = _mm512_min_pd(_mm512_loadu_pd(numbers.as_ptr()), _mm512_set1_pd(f64::MAX));
+        let numbers = _mm512_castpd_si512(numbers);
+        let places = _mm512_set_epi64(7, 6, 5, 4, 3, 2, 1, 0);
+        let keys = _mm512_or_si512(_mm512_andnot_si512(_mm512_set1_epi64(7), numbers), places);
+        let mut keys = _mm512_mask_blend_pd(named as __mmask8, _mm512_set1_pd(-1.0), _mm512_castsi512_pd(keys));
+        macro_rules! step {
+            ($other:expr, $larger:literal) => {
+                let other = $other;
+                keys = _mm512_mask_blend_pd($larger, _mm512_min_pd(keys, other), _mm512_max_pd(keys, other));
+            };
+        }
+        step!(_mm512_permute_pd::<0b0101_0101>(keys), 0b1001_1001);
+        step!(_mm512_permutex_pd::<0b0100_1110>(keys), 0b1100_0011);
+        step!(_mm512_permute_pd::<0b0101_0101>(keys), 0b1010_0101);
+        step!(_mm512_shuffle_f64x2::<0b0100_1110>(keys, keys), 0b0000_1111);
+        step!(_mm512_permutex_pd::<0b0100_1110>(keys), 0b0011_0011);
+        step!(_mm512_permute_pd::<0b0101_0101>(keys), 0b0101_0101);
+        let keys = _mm512_castpd_si512(keys);
+        let tags = _mm512_permutexvar_epi64(keys, _mm512_loadu_si512(tags.as_ptr().cast()));
+        let numbers = _mm512_andnot_si512(_mm512_set1_epi64(7), keys);
+        _mm512_storeu_pd(sorted.as_mut_ptr(), _mm512_castsi512_pd(numbers));
+        _mm512_storeu_si512(sorted_tags.as_mut_ptr().cast(), tags);
+    }
+}
+
 #[inline(always)]
 unsafe fn select_avx512(mask: __mmask8, yes: __m512d, no: __m512d) -> __m512d {
     // SAFETY: see above.
@@ -403,14 +452,14 @@ const PACKED: [[i32; 8]; 16] = {
 lanes!(
     Sse2(Sse2Mask), 2, true, "sse2", splat _mm_set1_pd, load _mm_loadu_pd, load_f32 load_f32_sse2,
     store _mm_storeu_pd, sqrt _mm_sqrt_pd, min _mm_min_pd, max _mm_max_pd, neg neg_sse2, compare compare_sse2,
-    select select_sse2, compress compress_sse2,
+    select select_sse2, compress compress_sse2, sort by_insertion,
     integers _mm_castpd_si128 _mm_castsi128_pd _mm_set1_epi64x _mm_add_epi64 _mm_sub_epi64 _mm_and_si128 _mm_or_si128
     _mm_slli_epi64 _mm_srli_epi64
 );
 lanes!(
     Avx2(Avx2Mask), 4, has_avx2(), "avx2,popcnt,bmi1,bmi2,lzcnt", splat _mm256_set1_pd, load _mm256_loadu_pd,
     load_f32 load_f32_avx2, store _mm256_storeu_pd, sqrt _mm256_sqrt_pd, min _mm256_min_pd, max _mm256_max_pd,
-    neg neg_avx2, compare _mm256_cmp_pd, select select_avx2, compress compress_avx2,
+    neg neg_avx2, compare _mm256_cmp_pd, select select_avx2, compress compress_avx2, sort by_insertion,
     integers _mm256_castpd_si256 _mm256_castsi256_pd _mm256_set1_epi64x _mm256_add_epi64 _mm256_sub_epi64 _mm256_and_si256 _mm256_or_si256
     _mm256_slli_epi64 _mm256_srli_epi64
 );
@@ -418,7 +467,7 @@ lanes!(
     Avx512(Avx512Mask), 8, has_avx512(), "avx512f,avx512dq,avx512vl,avx512bw,avx2,popcnt,bmi1,bmi2,lzcnt",
     splat _mm512_set1_pd, load _mm512_loadu_pd, load_f32 load_f32_avx512, store _mm512_storeu_pd,
     sqrt _mm512_sqrt_pd, min _mm512_min_pd, max _mm512_max_pd, neg neg_avx512, compare _mm512_cmp_pd_mask,
-    select select_avx512, compress _mm512_maskz_compress_pd,
+    select select_avx512, compress _mm512_maskz_compress_pd, sort sort_avx512,
     integers _mm512_castpd_si512 _mm512_castsi512_pd _mm512_set1_epi64 _mm512_add_epi64 _mm512_sub_epi64 _mm512_and_si512 _mm512_or_si512
     _mm512_slli_epi64 _mm512_srli_epi64
 );

@@ -1,13 +1,14 @@
 //! One tile, from camera rays to finished pixels.
 
+use super::camera::CameraRays;
 use super::hits::Hits;
 use super::lecture;
-use super::queue::{RayKind, RayQueue};
+use super::queue::{Generation, RayKind, RayQueue};
 use super::shading::{self, ShadowRays};
 use super::statistics::Statistics;
-use crate::film::Rgb;
+use crate::film::{Crop, Rgb};
 use crate::geometry::bvh::Packet;
-use crate::lanes::{Lanes, Mask};
+use crate::lanes::Lanes;
 use crate::world::World;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -21,13 +22,13 @@ const RAYS_PER_PIXEL: u32 = 1 << 18;
 
 /// Sees every generation when it is done, with its rays, hits and contributions.
 pub(crate) trait Observer {
-    fn generation(&mut self, queue: &RayQueue, hits: &Hits);
+    fn generation(&mut self, rays: &impl Generation, hits: &Hits);
 }
 
 /// Looks at nothing: plain rendering.
 impl Observer for () {
     #[inline(always)]
-    fn generation(&mut self, _queue: &RayQueue, _hits: &Hits) {}
+    fn generation(&mut self, _rays: &impl Generation, _hits: &Hits) {}
 }
 
 /// A worker: it owns the queues, which are used again for every tile.
@@ -38,6 +39,8 @@ pub(crate) struct Tracer<'a, L, O> {
     cancel: Option<&'a AtomicBool>,
     pub observer: O,
     pub statistics: Statistics,
+    /// Waits to be used again for the next tile.
+    camera_rays: Option<CameraRays<'a>>,
     packet: Box<Packet>,
     hits: Hits,
     shadow: ShadowRays,
@@ -60,6 +63,7 @@ impl<'a, L: Lanes, O: Observer> Tracer<'a, L, O> {
             cancel,
             observer,
             statistics: Statistics::default(),
+            camera_rays: None,
             packet: Box::default(),
             hits: Hits::default(),
             shadow: ShadowRays::default(),
@@ -73,44 +77,36 @@ impl<'a, L: Lanes, O: Observer> Tracer<'a, L, O> {
         }
     }
 
-    /// Traces some pixels of the whole picture, given by column and row, and returns their radiance in the same order;
-    /// `None` if it was cancelled on the way.
+    /// Traces a tile of the picture, and returns the radiance of its pixels, row by row; `None` if it was cancelled on the way.
     #[inline(always)]
-    pub fn trace(&mut self, pixels: &[(u32, u32)]) -> Option<&[Rgb]> {
-        let count = pixels.len();
+    pub fn trace(&mut self, tile: &Crop) -> Option<&[Rgb]> {
+        let mut camera_rays = self.camera_rays.take().unwrap_or_else(|| CameraRays::new(&self.world.camera));
+        camera_rays.aim(tile);
+        let count = camera_rays.len();
         self.radiance.clear();
         self.radiance.resize(count, Rgb::black());
         self.rays_of.clear();
-        self.rays_of.resize(count, 0);
+        self.rays_of.resize(count, 1);
         self.lost.clear();
         self.lost.resize(count, 0.0);
 
-        let camera_rays = self.camera_rays(pixels);
-        self.waiting.push((0, camera_rays));
+        let children = self.generation(0, &camera_rays);
+        self.camera_rays = Some(camera_rays);
+        self.enqueue(1, children);
         while let Some((depth, queue)) = self.waiting.pop() {
             if self.cancel.is_some_and(|c| c.load(Ordering::Relaxed)) {
                 self.waiting.clear();
                 return None;
             }
+            for pixel in queue.pixels() {
+                self.rays_of[pixel] += 1;
+            }
             let children = self.generation(depth, &queue);
             self.spare.push(queue);
             self.enqueue(depth + 1, children);
         }
-        self.count_lost_light(pixels);
+        self.count_lost_light(tile);
         Some(&self.radiance)
-    }
-
-    #[inline(always)]
-    fn camera_rays(&mut self, pixels: &[(u32, u32)]) -> RayQueue {
-        let mut queue = self.empty_queue();
-        for (group, some) in pixels.chunks(L::WIDTH).enumerate() {
-            let pixel = |lane: usize| some.get(lane).copied().unwrap_or_default();
-            let (x, y) = (L::from_fn(|i| f64::from(pixel(i).0)), L::from_fn(|i| f64::from(pixel(i).1)));
-            let (origin, dir) = self.world.camera.rays(x, y);
-            let pixel = L::from_fn(|lane| (group * L::WIDTH + lane) as f64);
-            queue.push_camera_rays(L::Mask::first(some.len()), origin, dir, pixel);
-        }
-        queue
     }
 
     fn empty_queue(&mut self) -> RayQueue {
@@ -148,14 +144,11 @@ impl<'a, L: Lanes, O: Observer> Tracer<'a, L, O> {
 
     /// Traces one generation, adds what it contributes, and returns its children.
     #[inline(always)]
-    fn generation(&mut self, depth: u32, queue: &RayQueue) -> RayQueue {
-        for pixel in queue.pixels() {
-            self.rays_of[pixel] += 1;
-        }
-        self.statistics.rays.add(queue.counts());
-        self.statistics.count_generation(depth, queue.len() as u64);
+    fn generation(&mut self, depth: u32, rays: &impl Generation) -> RayQueue {
+        self.statistics.rays.add(rays.counts());
+        self.statistics.count_generation(depth, rays.len() as u64);
 
-        self.hits.find::<L>(self.world, queue, &mut self.packet);
+        self.hits.find::<L>(self.world, rays, &mut self.packet);
         let shadow_rays = shading::local_colors::<L>(self.world, &mut self.hits, &mut self.shadow, &mut self.packet);
         self.statistics.rays.shadow += shadow_rays as u64;
         let mut children = self.empty_queue();
@@ -174,7 +167,7 @@ impl<'a, L: Lanes, O: Observer> Tracer<'a, L, O> {
             let pixel = &mut self.radiance[self.hits.pixel(row)];
             *pixel = *pixel + self.hits.contribution(row);
         }
-        self.observer.generation(queue, &self.hits);
+        self.observer.generation(rays, &self.hits);
         self.limit(depth, &mut children);
         children
     }
@@ -191,7 +184,7 @@ impl<'a, L: Lanes, O: Observer> Tracer<'a, L, O> {
         for row in 0..children.len() {
             let pixel = children.pixel(row);
             if too_deep || planned[pixel] >= RAYS_PER_PIXEL {
-                let Rgb { r, g, b } = children.rays::<f64>(row).weight.throughput();
+                let Rgb { r, g, b } = children.loads::<f64>(row).weight.throughput();
                 self.lost[pixel] += Rgb::new(r.abs(), g.abs(), b.abs()).mean();
                 self.statistics.lost.rays += 1;
             } else {
@@ -203,11 +196,12 @@ impl<'a, L: Lanes, O: Observer> Tracer<'a, L, O> {
         self.spare.push(kept);
     }
 
-    fn count_lost_light(&mut self, pixels: &[(u32, u32)]) {
-        let width = u64::from(self.world.camera.size[0]);
-        for (&(x, y), &lost) in pixels.iter().zip(&self.lost) {
+    fn count_lost_light(&mut self, tile: &Crop) {
+        let (width, columns) = (u64::from(self.world.camera.size[0]), tile.width as usize);
+        for (i, &lost) in self.lost.iter().enumerate() {
             if lost > 0.0 {
-                self.statistics.lost.add(u64::from(y) * width + u64::from(x), lost);
+                let (x, y) = (u64::from(tile.x) + (i % columns) as u64, u64::from(tile.y) + (i / columns) as u64);
+                self.statistics.lost.add(y * width + x, lost);
             }
         }
     }

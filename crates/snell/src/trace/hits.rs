@@ -1,10 +1,10 @@
 //! The hits of a generation as columns, and a view of several of them at once.
 
-use super::queue::{RayQueue, Rays, Weight};
+use super::queue::{Generation, Load, Weight};
 use crate::film::Rgb;
 use crate::geometry::Vec3;
-use crate::geometry::bvh::{PACKET, Packet};
-use crate::lanes::{Columns, Lanes, MAX_WIDTH, Mask};
+use crate::geometry::bvh::{Few, Nearest, PACKET, Packet};
+use crate::lanes::{Columns, Lanes, MAX_WIDTH, Mask, index};
 use crate::scene::Material;
 use crate::world::World;
 
@@ -28,6 +28,8 @@ const CONTRIBUTION: usize = 7;
 pub(crate) struct Hits {
     found: Columns<16>,
     surface: Columns<10>,
+    /// Spheres that the rays may meet.
+    seen: Few,
 }
 
 impl Hits {
@@ -38,25 +40,51 @@ impl Hits {
 
     /// Finds the closest hits of all rays, and what surface is there.
     #[inline(always)]
-    pub fn find<L: Lanes>(&mut self, world: &World, queue: &RayQueue, packet: &mut Packet) {
+    pub fn find<L: Lanes>(&mut self, world: &World, rays: &impl Generation, packet: &mut Packet) {
         self.found.clear();
-        for first in (0..queue.len()).step_by(PACKET) {
-            let rays = queue.fill::<L>(packet, first, world.tree.has_triangles());
-            let hit = world.tree.intersect::<L, false>(packet, rays);
-            for start in (0..PACKET).step_by(L::WIDTH) {
-                let mask = L::Mask::from_bits((hit >> start) as u32);
-                if !mask.any() {
-                    continue;
+        if let Some(spheres) = world.tree.few() {
+            let mut seen = std::mem::take(&mut self.seen);
+            seen.clear();
+            seen.extend(spheres.iter().filter(|(_, sphere)| rays.may_meet(sphere)));
+            let all = if seen.is_empty() { 0 } else { rays.len() };
+            for start in (0..all).step_by(L::WIDTH) {
+                let ((origin, dir), load) = (rays.ways::<L>(start), rays.loads::<L>(start));
+                let active = L::Mask::first(rays.len() - start);
+                let none = Nearest::none(active, load.t_min, L::splat(f64::INFINITY), load.source);
+                let Nearest { hit, t, primitive, .. } = none.among(&seen, origin, dir);
+                if hit.any() {
+                    self.push(hit, L::ramp(start), origin, dir, t, primitive, &load);
                 }
-                let (t, primitive) = (L::load(&packet.t[start..]), L::load(&packet.primitive[start..]));
-                let Rays { origin, dir, weight, pixel, .. } = queue.rays::<L>(first + start);
-                let row = L::from_fn(|lane| (first + start + lane) as f64);
-                let (p, wo) = (origin + dir * t, -dir);
-                let Weight { attenuation: a, factor: f } = weight;
-                let columns = [row, pixel, primitive, t, p.x, p.y, p.z, wo.x, wo.y, wo.z, a.r, a.g, a.b, f.r, f.g, f.b];
-                self.found.push(mask, columns);
+            }
+            self.seen = seen;
+        } else {
+            for first in (0..rays.len()).step_by(PACKET) {
+                let all = rays.fill::<L>(packet, first, world.tree.has_triangles());
+                let hit = world.tree.intersect::<L, false>(packet, all);
+                for start in (0..PACKET).step_by(L::WIDTH) {
+                    let mask = L::Mask::from_bits((hit >> start) as u32);
+                    if mask.any() {
+                        let (origin, dir) = packet.ways(start);
+                        let (t, primitive) = (L::load(&packet.t[start..]), L::load(&packet.primitive[start..]));
+                        let row = first + start;
+                        self.push(mask, L::ramp(row), origin, dir, t, primitive, &rays.loads(row));
+                    }
+                }
             }
         }
+        self.look_up_surfaces::<L>(world);
+    }
+
+    #[inline(always)]
+    #[allow(clippy::too_many_arguments, reason = "a hit in lanes is many numbers, and nobody else wants them together")]
+    fn push<L: Lanes>(&mut self, hit: L::Mask, row: L, o: Vec3<L>, d: Vec3<L>, t: L, primitive: L, load: &Load<L>) {
+        let (p, wo, pixel) = (o + d * t, -d, load.pixel);
+        let Weight { attenuation: a, factor: f } = load.weight;
+        self.found.push(hit, [row, pixel, primitive, t, p.x, p.y, p.z, wo.x, wo.y, wo.z, a.r, a.g, a.b, f.r, f.g, f.b]);
+    }
+
+    #[inline(always)]
+    fn look_up_surfaces<L: Lanes>(&mut self, world: &World) {
         self.surface.clear();
         for start in (0..self.len()).step_by(L::WIDTH) {
             let (mut primitives, mut materials) = ([0; MAX_WIDTH], [0.0; MAX_WIDTH]);
@@ -75,17 +103,17 @@ impl Hits {
 
     /// Row of the ray of a hit in its queue.
     pub fn ray(&self, row: usize) -> usize {
-        self.found.at(RAY, row) as usize
+        index(self.found.at(RAY, row))
     }
 
     #[inline(always)]
     pub fn pixel(&self, row: usize) -> usize {
-        self.found.at(PIXEL, row) as usize
+        index(self.found.at(PIXEL, row))
     }
 
     #[inline(always)]
     pub fn primitive(&self, row: usize) -> u32 {
-        self.found.at(PRIMITIVE, row) as u32
+        index(self.found.at(PRIMITIVE, row)) as u32
     }
 
     pub fn t(&self, row: usize) -> f64 {
@@ -101,8 +129,11 @@ impl Hits {
     /// What the hit adds to its pixel.
     #[inline(always)]
     pub fn contribution(&self, row: usize) -> Rgb {
-        let at = |i| self.surface.at(CONTRIBUTION + i, row);
-        Rgb::new(at(0), at(1), at(2))
+        let [r, g, b] = [0, 1, 2].map(
+            #[inline(always)]
+            |i| self.surface.at(CONTRIBUTION + i, row),
+        );
+        Rgb::new(r, g, b)
     }
 
     /// Replaces the local colour of a batch.
@@ -225,7 +256,7 @@ impl<L: Lanes> Batch<'_, L> {
     #[inline(always)]
     fn material_of(&self, lane: usize) -> &Material {
         let row = (self.start + lane).min(self.hits.len() - 1);
-        &self.world.materials[self.hits.surface.at(MATERIAL, row) as usize]
+        &self.world.materials[index(self.hits.surface.at(MATERIAL, row))]
     }
 
     #[inline(always)]

@@ -13,7 +13,7 @@
 //! compound, and bounce n weighs `kr^(n(n+1)/2)` instead of `kr^n`. In the course's models `f` stays 1.
 
 use super::hits::{Batch, Coefficients};
-use super::queue::{Rays, Weight};
+use super::queue::{Load, Rays, Weight};
 use crate::film::Rgb;
 use crate::geometry::Vec3;
 use crate::lanes::{Lanes, Mask};
@@ -58,8 +58,8 @@ pub(crate) fn exit_ray<L: Lanes>(hits: &Batch<'_, L>) -> (L::Mask, Rays<L>) {
 
 #[inline(always)]
 fn child<L: Lanes>(hits: &Batch<'_, L>, origin: Vec3<L>, dir: Vec3<L>, weight: Weight<L>) -> Rays<L> {
-    let (pixel, source, parent) = (hits.pixel(), hits.primitive(), hits.ray());
-    Rays { origin, dir, t_min: L::splat(T_MIN), weight, pixel, source, parent }
+    let (source, parent, pixel) = (hits.primitive(), hits.ray(), hits.pixel());
+    Rays { origin, dir, load: Load { weight, t_min: L::splat(T_MIN), source, parent, pixel } }
 }
 
 /// What the local colour is multiplied by.

@@ -12,6 +12,7 @@
 //! The order of addition within a pixel follows from its own rays alone, so neither the tile, nor the lane width, nor
 //! the thread can change a bit of it.
 
+mod camera;
 mod generation;
 mod hits;
 mod lecture;

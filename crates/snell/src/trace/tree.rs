@@ -2,9 +2,10 @@
 
 use super::generation::Observer;
 use super::hits::Hits;
-use super::queue::{RayKind, RayQueue};
+use super::queue::{Generation, RayKind};
 use crate::film::Rgb;
 use crate::geometry::Vec3;
+use crate::lanes::index;
 
 /// One ray, and what it added.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,17 +53,17 @@ pub(crate) struct Recorder {
 }
 
 impl Observer for Recorder {
-    fn generation(&mut self, queue: &RayQueue, hits: &Hits) {
+    fn generation(&mut self, rays: &impl Generation, hits: &Hits) {
         let start = self.tree.nodes.len();
-        for row in 0..queue.len() {
-            let ray = queue.rays::<f64>(row);
+        for row in 0..rays.len() {
+            let ((origin, dir), load) = (rays.ways::<f64>(row), rays.loads::<f64>(row));
             self.tree.nodes.push(Node {
-                kind: queue.kind(row),
+                kind: rays.kind(row),
                 depth: self.depth,
-                parent: (self.depth > 0).then(|| self.parents + queue.parent(row)),
-                origin: ray.origin,
-                dir: ray.dir,
-                throughput: ray.weight.throughput(),
+                parent: (self.depth > 0).then(|| self.parents + index(load.parent)),
+                origin,
+                dir,
+                throughput: load.weight.throughput(),
                 hit: None,
                 contribution: Rgb::black(),
             });

@@ -27,17 +27,30 @@ impl CameraFrame {
 
     /// Origin and direction of the ray through a pixel, (0, 0) on top left.
     pub fn ray(&self, x: u32, y: u32) -> (Vec3, Vec3) {
-        self.rays(f64::from(x), f64::from(y))
+        self.rays(self.across(x), self.up(y))
     }
 
-    /// Origins and directions of the rays through some pixels, by column and row.
+    /// Where the image plane is, along the axis that points backwards.
+    pub(crate) fn near(&self) -> f64 {
+        self.near
+    }
+
+    /// How far right of the middle of the image plane a column of pixels is.
+    pub(crate) fn across(&self, x: u32) -> f64 {
+        let [left, right, ..] = self.bounds;
+        left + share(x, self.size[0]) * (right - left)
+    }
+
+    /// How far above the middle of the image plane a row of pixels is.
+    pub(crate) fn up(&self, y: u32) -> f64 {
+        let [.., bottom, top] = self.bounds;
+        top - share(y, self.size[1]) * (top - bottom)
+    }
+
+    /// Origins and directions of the rays through some points of the image plane.
     #[inline(always)]
-    pub(crate) fn rays<L: Lanes>(&self, x: L, y: L) -> (Vec3<L>, Vec3<L>) {
-        let [left, right, bottom, top] = self.bounds;
-        let [width, height] = self.size;
-        let px = L::splat(left) + share(x, width) * L::splat(right - left);
-        let py = L::splat(top) - share(y, height) * L::splat(top - bottom);
-        let origin = self.point(px, py);
+    pub(crate) fn rays<L: Lanes>(&self, across: L, up: L) -> (Vec3<L>, Vec3<L>) {
+        let origin = self.point(across, up);
         (origin, (origin - self.eye.splat()).unit())
     }
 
@@ -62,9 +75,8 @@ impl CameraFrame {
 }
 
 /// How far along a row of `count` pixels: 0 at the first, 1 at the last, the middle where there is only one.
-#[inline(always)]
-fn share<L: Lanes>(index: L, count: u32) -> L {
-    if count == 1 { L::splat(0.5) } else { index / L::splat(f64::from(count - 1)) }
+fn share(index: u32, count: u32) -> f64 {
+    if count == 1 { 0.5 } else { f64::from(index) / f64::from(count - 1) }
 }
 
 #[cfg(test)]

@@ -107,7 +107,8 @@ impl World {
         if spheres.any() {
             // Only near roots count, so the ray is outside.
             let center = |lane: usize| self.spheres.get(primitives[lane]).map_or(Vec3::default(), |s| s.center);
-            normal = normal - Vec3::from_fn(center);
+            let one = primitives[..L::WIDTH].iter().all(|&p| p == primitives[0]);
+            normal = normal - if one { center(0).splat() } else { Vec3::from_fn(center) };
         }
         if (!spheres).any() {
             // A lane with a sphere gets a triangle without area, and is not looked at.

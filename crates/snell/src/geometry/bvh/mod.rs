@@ -7,6 +7,7 @@
 
 mod build;
 mod instance;
+mod nearest;
 mod node;
 mod packet;
 mod primitives;
@@ -15,6 +16,7 @@ mod together;
 
 pub use build::Quality;
 pub use instance::Instance;
+pub(crate) use nearest::{Few, Nearest};
 pub(crate) use packet::{Packet, SIZE as PACKET};
 pub use primitives::Shapes;
 
@@ -36,6 +38,9 @@ use primitives::Primitives;
 /// their boxes come with that margin ([`sphere::MARGIN`](super::sphere::MARGIN)).
 const MARGIN: f64 = 1.0 / (1u64 << 48) as f64;
 
+/// Cache lines that are fetched ahead: a node has four, and a leaf of a mesh about six.
+const FETCHED: usize = 8;
+
 /// Fewer primitives are done before threads have started.
 const WORTH_THREADS: usize = 1 << 12;
 
@@ -48,6 +53,8 @@ pub struct Bvh {
     /// Trees of their own, and where they stand.
     models: Vec<Bvh>,
     instances: Vec<Instance>,
+    /// The spheres once more, if they are few and all there is.
+    few: Few,
 }
 
 /// What a tree is made of, with those of its models.
@@ -65,35 +72,6 @@ pub struct TreeStatistics {
     pub primitive_bytes: usize,
 }
 
-/// Boxes of a node that are met, as bits, from the farthest to the nearest: `near` says where they are entered.
-///
-/// Distances up to the nearest 2⁻⁴⁹ of themselves are taken as equal: places stand in the last three bits of the pattern, and
-/// patterns of positive numbers are in their order.
-#[inline(always)]
-fn farthest_first(mut met: u32, near: &[f64; node::WIDTH], keys: &mut [u64; node::WIDTH]) -> usize {
-    let mut count = 0;
-    while met != 0 {
-        let slot = met.trailing_zeros() as usize & 7;
-        met &= met - 1;
-        let key = near[slot].to_bits() & !7 | slot as u64;
-        let mut at = count;
-        while at > 0 && keys[at - 1] < key {
-            keys[at & 7] = keys[at - 1];
-            at -= 1;
-        }
-        keys[at & 7] = key;
-        count += 1;
-    }
-    count
-}
-
-/// A box that a single ray will enter at `t`.
-#[derive(Clone, Copy, Debug)]
-struct Waiting {
-    t: f64,
-    child: Child,
-}
-
 impl Bvh {
     /// Builds the tree. `reach` is the largest distance between a ray's origin and a primitive.
     /// `models`: the trees that stand at the instances; they have none of their own. `threads`: 0 for as many as the
@@ -106,17 +84,22 @@ impl Bvh {
             let primitives = Primitives::new(shapes, &mut tree, parallel);
             (tree, primitives)
         });
-        Self { nodes: tree.nodes, primitives, depth: tree.depth, models, instances: shapes.instances.to_vec() }
+        Self {
+            nodes: tree.nodes,
+            primitives,
+            depth: tree.depth,
+            models,
+            instances: shapes.instances.to_vec(),
+            few: nearest::few(shapes),
+        }
     }
 
     /// Fetches what is in a box while others are visited first: a tree of any size does not fit into a cache.
     #[inline(always)]
     fn prefetch(&self, child: Child) {
-        match child.kind() {
-            Kind::Node(number) => prefetch(&self.nodes, number as usize),
-            Kind::Block(block) => prefetch(&self.primitives.numbers, block.at),
-            Kind::Leaf(_) | Kind::Nothing => {}
-        }
+        let node = self.nodes.as_ptr().wrapping_add(child.number()).cast::<u8>();
+        let leaf = self.primitives.numbers.as_ptr().wrapping_add(child.place().at).cast::<u8>();
+        prefetch::<FETCHED>(if child.is_node() { node } else { leaf });
     }
 
     /// Are there any triangles? Otherwise rays need no shears.
@@ -156,11 +139,11 @@ impl Bvh {
     /// The same primitives in boxes that hold everything: every ray meets every primitive. The oracle of the tests.
     #[must_use]
     pub fn flat(mut self) -> Self {
+        self.few.clear();
+        let everything = OuterBox { min: [f32::NEG_INFINITY; 3], max: [f32::INFINITY; 3] };
         for node in &mut self.nodes {
-            for slot in (0..node::WIDTH).filter(|&slot| node.child[slot] != Child::NOTHING) {
-                for axis in 0..3 {
-                    (node.min[axis][slot], node.max[axis][slot]) = (f32::NEG_INFINITY, f32::INFINITY);
-                }
+            for place in 0..node.used().count_ones() as usize {
+                node.set_bounds(place, &everything);
             }
         }
         self.models = self.models.into_iter().map(Self::flat).collect();

@@ -1,10 +1,13 @@
 //! The tree as it is stored: nodes with eight boxes, leaves with up to eight primitives.
 
+use crate::geometry::bounds::OuterBox;
+
 /// Children of a node, and primitives of a leaf, at most.
 pub(crate) const WIDTH: usize = 8;
 
 /// What is in a box of a node: another node, a leaf, or nothing.
-#[derive(Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(transparent)]
 pub(crate) struct Child(u64);
 
 impl Default for Child {
@@ -56,18 +59,37 @@ impl Child {
         Self(at as u64 | (counts as u64) << PLACE | 2 << TAG)
     }
 
+    /// Is it another node?
+    #[inline(always)]
+    pub fn is_node(self) -> bool {
+        self.0 >> TAG == 0
+    }
+
+    /// The number of a node.
+    #[inline(always)]
+    pub fn number(self) -> usize {
+        self.0 as u32 as usize
+    }
+
+    /// Where a leaf with its place stands.
+    #[inline(always)]
+    pub fn place(self) -> Block {
+        let Self(bits) = self;
+        Block {
+            at: (bits & ((1 << PLACE) - 1)) as usize,
+            spheres: (bits >> PLACE & 15) as usize,
+            triangles: (bits >> (PLACE + 4) & 15) as usize,
+            instances: (bits >> (PLACE + 8) & 15) as usize,
+        }
+    }
+
     #[inline(always)]
     pub fn kind(self) -> Kind {
         let Self(bits) = self;
         match bits >> TAG {
             0 => Kind::Node(bits as u32),
             1 => Kind::Leaf(bits as u32),
-            2 => Kind::Block(Block {
-                at: (bits & ((1 << PLACE) - 1)) as usize,
-                spheres: (bits >> PLACE & 15) as usize,
-                triangles: (bits >> (PLACE + 4) & 15) as usize,
-                instances: (bits >> (PLACE + 8) & 15) as usize,
-            }),
+            2 => Kind::Block(self.place()),
             _ => Kind::Nothing,
         }
     }
@@ -92,28 +114,43 @@ impl std::fmt::Debug for Child {
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub(crate) struct Node {
-    /// Smallest coordinates: `min[axis][place]`.
-    pub min: [[f32; WIDTH]; 3],
-    /// Largest coordinates.
-    pub max: [[f32; WIDTH]; 3],
+    /// Smallest and largest coordinates: `planes[2·axis][place]` and `planes[2·axis + 1][place]`.
+    pub planes: [[f32; WIDTH]; 6],
     pub child: [Child; WIDTH],
 }
 
 impl Node {
-    pub const EMPTY: Self =
-        Self { min: [[f32::INFINITY; WIDTH]; 3], max: [[f32::NEG_INFINITY; WIDTH]; 3], child: [Child::NOTHING; WIDTH] };
+    pub const EMPTY: Self = {
+        let (min, max) = ([f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]);
+        Self { planes: [min, max, min, max, min, max], child: [Child::NOTHING; WIDTH] }
+    };
+
+    /// The box in a place.
+    #[cfg(test)]
+    pub fn bounds(&self, place: usize) -> OuterBox {
+        let side = |side: usize| [0, 1, 2].map(|axis| self.planes[plane(axis, side)][place]);
+        OuterBox { min: side(0), max: side(1) }
+    }
+
+    /// Puts a box into a place.
+    pub fn set_bounds(&mut self, place: usize, bounds: &OuterBox) {
+        for axis in 0..3 {
+            self.planes[plane(axis, 0)][place] = bounds.min[axis];
+            self.planes[plane(axis, 1)][place] = bounds.max[axis];
+        }
+    }
 
     /// The places that are used, as bits.
     #[inline(always)]
     pub fn used(&self) -> u32 {
         (0..WIDTH).fold(0, |bits, place| bits | u32::from(self.child[place] != Child::NOTHING) << place)
     }
+}
 
-    /// One side of the boxes along an axis: 0 the smallest coordinates, 1 the largest.
-    #[inline(always)]
-    pub fn side(&self, axis: usize, side: usize) -> &[f32; WIDTH] {
-        if side == 0 { &self.min[axis] } else { &self.max[axis] }
-    }
+/// The number of a side of the boxes: 0 the smallest coordinates along an axis, 1 the largest.
+#[inline(always)]
+pub(crate) const fn plane(axis: usize, side: usize) -> usize {
+    2 * axis + side
 }
 
 /// `count` (1..=8) primitives from `first` on in [`Tree::order`].

@@ -1,6 +1,6 @@
 //! Up to 64 rays in columns, as they go through the tree.
 
-use super::single::Walker;
+use super::single::Walkers;
 use super::together::BeamWaiting;
 use crate::geometry::Vec3;
 use crate::geometry::ray::{axes, inverse};
@@ -35,7 +35,7 @@ pub(crate) struct Packet {
     /// Boxes that wait.
     pub(super) waiting: Vec<BeamWaiting>,
     /// Rays that go alone.
-    pub(super) walkers: Vec<Walker>,
+    pub(super) walkers: Walkers,
     /// Rays in the space of a model.
     pub(super) inner: Option<Box<Packet>>,
 }
@@ -55,7 +55,7 @@ impl Default for Packet {
             negative: [0; 3],
             main: [0; 3],
             waiting: Vec::new(),
-            walkers: Vec::new(),
+            walkers: None,
             inner: None,
         }
     }
@@ -127,6 +127,12 @@ impl Packet {
         t_max.store(&mut self.t[start..]);
         source.store(&mut self.source[start..]);
         L::splat(-1.0).store(&mut self.primitive[start..]);
+    }
+
+    /// Origins and directions of the rays of one group of lanes.
+    #[inline(always)]
+    pub fn ways<L: Lanes>(&self, start: usize) -> (Vec3<L>, Vec3<L>) {
+        (Self::vector(&self.origin, start, [0, 1, 2]), Self::vector(&self.dir, start, [0, 1, 2]))
     }
 
     #[inline(always)]

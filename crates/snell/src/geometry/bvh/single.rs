@@ -1,9 +1,10 @@
 //! One ray through the tree: the boxes of a node, or the primitives of a leaf, in lanes.
 
-use super::node::{self, Block, Child, Kind, Node};
+use super::Bvh;
+use super::build::MAX_DEPTH;
+use super::node::{Block, Child, Node, WIDTH, plane};
 use super::packet::{Octant, Packet};
 use super::primitives::{SPHERE, TRIANGLE};
-use super::{Bvh, Waiting, farthest_first};
 use crate::geometry::ray::Shear;
 use crate::geometry::{Vec3, sphere, triangle};
 use crate::lanes::{Lanes, Mask};
@@ -11,16 +12,36 @@ use crate::lanes::{Lanes, Mask};
 /// So many rays are on their way at the same time.
 const WALKERS: usize = 8;
 
+/// The walkers of a packet, made when they are first needed.
+pub(super) type Walkers = Option<Box<[Walker; WALKERS]>>;
+
 /// A ray on its way through the tree alone.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug)]
+#[repr(align(64))]
 pub(super) struct Walker {
+    /// Which one of its packet.
     ray: usize,
     octant: Octant,
+    origin: [f64; 3],
+    inv_dir: [f64; 3],
+    t_min: f64,
     /// What it visits next.
     child: Child,
-    /// What it visits later.
-    waiting: Vec<Waiting>,
+    waiting: Stack,
 }
+
+/// Boxes that wait for a ray, the next one last.
+#[derive(Clone, Debug)]
+struct Stack {
+    /// So many are waiting.
+    count: usize,
+    /// Where each is entered.
+    t: [f64; ROOM],
+    child: [Child; ROOM],
+}
+
+/// Every node on the way down leaves at most seven boxes waiting, and is written with a whole group of eight.
+const ROOM: usize = (WIDTH - 1) * MAX_DEPTH + 2 * WIDTH;
 
 impl Bvh {
     /// Follows some rays of a packet from a node on, each its own way, near boxes first. With `ANY` a ray stops at its first
@@ -34,72 +55,49 @@ impl Bvh {
         packet: &mut Packet,
         mut rays: u64,
         from: Child,
-        walkers: &mut Vec<Walker>,
+        walkers: &mut Walkers,
     ) -> u64 {
-        walkers.resize_with(WALKERS, Walker::default);
-        let (mut near, mut keys) = ([0.0; node::WIDTH], [0; node::WIDTH]);
-        let mut hit = 0;
-        let mut walking = 0;
-        while walking < WALKERS && rays != 0 {
-            let ray = rays.trailing_zeros() as usize & 63;
-            rays &= rays - 1;
-            walkers[walking].start(packet, ray, from);
-            walking += 1;
+        let walkers = walkers.get_or_insert_with(|| Box::new([(); WALKERS].map(|()| Walker::default())));
+        let mut next_ray = || {
+            let ray = (rays != 0).then_some(rays.trailing_zeros() as usize & 63);
+            rays &= rays.wrapping_sub(1);
+            ray
+        };
+        // Those that are on their way.
+        let (mut walking, mut count) = ([0; WALKERS], 0);
+        while count < WALKERS
+            && let Some(ray) = next_ray()
+        {
+            walkers[count].start(packet, ray, from);
+            walking[count] = count;
+            count += 1;
         }
-        let mut turn = 0;
-        while walking > 0 {
-            let walker = &mut walkers[turn];
-            let (ray, octant) = (walker.ray, &walker.octant);
-            let mut done = false;
-            let mut next = Child::NOTHING;
-            match walker.child.kind() {
-                Kind::Nothing | Kind::Leaf(_) => {}
-                Kind::Block(block) => {
-                    let found = self.test_alone::<L, ANY>(packet, ray, octant, block);
-                    hit |= u64::from(found) << ray;
-                    done = ANY && found;
-                }
-                Kind::Node(number) => {
-                    let node = &self.nodes[number as usize];
-                    let met = Boxes::<L>::new(packet, ray, octant).meet(node, packet.t[ray], &mut near);
-                    if met & met.wrapping_sub(1) == 0 {
-                        if met != 0 {
-                            next = node.child[met.trailing_zeros() as usize & 7];
-                        }
-                    } else {
-                        let count = farthest_first(met, &near, &mut keys);
-                        for &key in &keys[..count - 1] {
-                            let slot = key as usize & 7;
-                            walker.waiting.push(Waiting { t: near[slot], child: node.child[slot] });
-                        }
-                        next = node.child[keys[count - 1] as usize & 7];
-                    }
+        let (mut hit, mut turn) = (0, 0);
+        while count > 0 {
+            let walker = &mut walkers[walking[turn] & (WALKERS - 1)];
+            let ray = walker.ray & 63;
+            if walker.child.is_node() {
+                walker.open::<L>(&self.nodes[walker.child.number()], packet.t[ray]);
+            } else if self.test_alone::<L, ANY>(packet, ray, &walker.octant, walker.child.place()) {
+                hit |= 1 << ray;
+                if ANY {
+                    walker.waiting.clear();
                 }
             }
-            while !done && next == Child::NOTHING {
-                match walker.waiting.pop() {
-                    None => done = true,
-                    // Hits found meanwhile may have closed this box.
-                    Some(waiting) if waiting.t <= packet.t[ray] => next = waiting.child,
-                    Some(_) => {}
-                }
-            }
-            if !done {
-                self.prefetch(next);
-                walker.child = next;
-                turn += 1;
-            } else if rays != 0 {
-                let ray = rays.trailing_zeros() as usize & 63;
-                rays &= rays - 1;
+            // Hits found meanwhile may have closed boxes.
+            walker.child = walker.waiting.pop(packet.t[ray]);
+            if walker.child != Child::NOTHING {
+                self.prefetch(walker.child);
+            } else if let Some(ray) = next_ray() {
                 walker.start(packet, ray, from);
-                turn += 1;
             } else {
-                walking -= 1;
-                walkers.swap(turn, walking);
+                count -= 1;
+                walking[turn] = walking[count];
+                // Whoever takes its place makes the next step.
+                turn = turn.wrapping_sub(1);
             }
-            if turn >= walking {
-                turn = 0;
-            }
+            turn = turn.wrapping_add(1);
+            turn = if turn >= count { 0 } else { turn };
         }
         hit
     }
@@ -149,51 +147,79 @@ impl Bvh {
     }
 }
 
+impl Default for Walker {
+    fn default() -> Self {
+        Self {
+            ray: 0,
+            octant: Octant::default(),
+            origin: [0.0; 3],
+            inv_dir: [0.0; 3],
+            t_min: 0.0,
+            child: Child::NOTHING,
+            waiting: Stack { count: 0, t: [0.0; ROOM], child: [Child::NOTHING; ROOM] },
+        }
+    }
+}
+
 impl Walker {
     #[inline(always)]
     fn start(&mut self, packet: &Packet, ray: usize, from: Child) {
         (self.ray, self.octant, self.child) = (ray, packet.octant(ray), from);
+        for axis in 0..3 {
+            (self.origin[axis], self.inv_dir[axis]) = (packet.origin[axis][ray], packet.inv_dir[axis][ray]);
+        }
+        self.t_min = packet.t_min[ray];
         self.waiting.clear();
     }
-}
 
-/// What the boxes of a node need of a ray, in every lane.
-struct Boxes<L> {
-    origin: [L; 3],
-    inv_dir: [L; 3],
-    side: [usize; 3],
-    t_min: L,
-}
-
-impl<L: Lanes> Boxes<L> {
-    #[inline(always)]
-    fn new(packet: &Packet, ray: usize, octant: &Octant) -> Self {
-        Self {
-            origin: Packet::one(&packet.origin, ray, [0, 1, 2]).into(),
-            inv_dir: Packet::one(&packet.inv_dir, ray, [0, 1, 2]).into(),
-            side: octant.side,
-            t_min: L::splat(packet.t_min[ray]),
-        }
-    }
-
-    /// Which of the eight boxes the ray meets up to `limit`, as bits, and where it enters them.
+    /// Lets the boxes of a node wait that the ray meets up to `limit`.
     ///
     /// The slab test of Kay and Kajiya (1986) in `f64` on the widened corners.
     #[inline(always)]
-    fn meet(&self, node: &Node, limit: f64, near: &mut [f64; node::WIDTH]) -> u32 {
-        let limit = L::splat(limit);
-        let mut met = 0;
-        for start in (0..node::WIDTH).step_by(L::WIDTH) {
-            let (mut enter, mut leave) = (self.t_min, limit);
+    fn open<L: Lanes>(&mut self, node: &Node, limit: f64) {
+        let (mut met, mut near) = (0, [0.0; WIDTH]);
+        for start in (0..WIDTH).step_by(L::WIDTH) {
+            let (mut enter, mut leave) = (L::splat(self.t_min), L::splat(limit));
             for axis in 0..3 {
-                let (side, o, i) = (self.side[axis] & 1, self.origin[axis], self.inv_dir[axis]);
-                enter = ((L::load_f32(&node.side(axis, side)[start..]) - o) * i).max(enter);
-                leave = ((L::load_f32(&node.side(axis, 1 - side)[start..]) - o) * i).min(leave);
+                let (o, i) = (L::splat(self.origin[axis]), L::splat(self.inv_dir[axis]));
+                let first = plane(axis, self.octant.side[axis] & 1);
+                enter = ((L::load_f32(&node.planes[first][start..]) - o) * i).max(enter);
+                leave = ((L::load_f32(&node.planes[first ^ 1][start..]) - o) * i).min(leave);
             }
             enter.store(&mut near[start..]);
             met |= enter.le(leave).bits() << start;
         }
-        met
+        self.waiting.push::<L>(met, &near, &node.child);
+    }
+}
+
+impl Stack {
+    /// Forgets all but the end, which is reached at any distance.
+    #[inline(always)]
+    fn clear(&mut self) {
+        (self.t[0], self.child[0], self.count) = (f64::NEG_INFINITY, Child::NOTHING, 1);
+    }
+
+    /// Appends the boxes of a node that are met, the nearest last.
+    #[inline(always)]
+    fn push<L: Lanes>(&mut self, met: u32, near: &[f64; WIDTH], child: &[Child; WIDTH]) {
+        let (t, children) = (&mut self.t[self.count..], &mut self.child[self.count..]);
+        if let (Some(t), Some(children)) = (t.first_chunk_mut(), children.first_chunk_mut::<WIDTH>()) {
+            L::sort_descending(met, near, bytemuck::must_cast_ref(child), (t, bytemuck::must_cast_mut(children)));
+            self.count += met.count_ones() as usize;
+        }
+    }
+
+    /// The next box that is not entered beyond `limit`, at last the end, also if `limit` is NaN.
+    #[inline(always)]
+    fn pop(&mut self, limit: f64) -> Child {
+        loop {
+            self.count -= 1;
+            let beyond = self.t[self.count] > limit;
+            if !beyond {
+                return self.child[self.count];
+            }
+        }
     }
 }
 

@@ -6,15 +6,19 @@
 //! are left, each goes its own way ([`follow`](Bvh::follow)). After Wald, Benthin and Boulos, *Getting Rid of
 //! Packets*, 2008; Benthin et al., *Combining Single and Packet-Ray Tracing for Arbitrary Ray Distributions*, 2012.
 
-use super::node::{self, Block, Child, Kind, Node};
+use super::Bvh;
+use super::nearest::Nearest;
+use super::node::{self, Block, Child, Kind, Node, plane};
 use super::packet::{Octant, Packet, SIZE, groups};
 use super::primitives::{SPHERE, TRIANGLE};
-use super::{Bvh, farthest_first};
 use crate::geometry::ray::Shear;
 use crate::geometry::{Vec3, sphere, triangle};
 use crate::lanes::{Kernel, Lanes, Mask};
 
-/// So few rays go on alone.
+/// So few rays of a packet are not worth a beam: they go alone from the root.
+const ALIKE: u32 = 16;
+
+/// So few rays of a beam go on alone.
 const FEW: u32 = 8;
 
 /// A box that some rays of a packet may enter, at `t` or later.
@@ -66,12 +70,12 @@ impl Beam {
         for start in (0..node::WIDTH).step_by(L::WIDTH) {
             let (mut enter, mut leave) = (L::splat(0.0), L::splat(farthest));
             for axis in 0..3 {
-                let side = self.side[axis] & 1;
+                let (side, first_plane) = (self.side[axis] & 1, plane(axis, self.side[axis] & 1));
                 let (i_low, i_high) = (L::splat(self.inv_dir[axis][0]), L::splat(self.inv_dir[axis][1]));
                 // The origin that is farthest along reaches a plane first.
                 let (first, last) = (L::splat(self.origin[axis][1 - side]), L::splat(self.origin[axis][side]));
-                let to_near = L::load_f32(&node.side(axis, side)[start..]) - first;
-                let to_far = L::load_f32(&node.side(axis, 1 - side)[start..]) - last;
+                let to_near = L::load_f32(&node.planes[first_plane][start..]) - first;
+                let to_far = L::load_f32(&node.planes[first_plane ^ 1][start..]) - last;
                 enter = (to_near * i_low).min(to_near * i_high).max(enter);
                 leave = (to_far * i_low).max(to_far * i_high).min(leave);
             }
@@ -121,7 +125,7 @@ impl Bvh {
             // The first is always like itself; said again, so that the loop surely ends.
             alike |= 1 << first;
             rays &= !alike;
-            if alike.count_ones() <= FEW {
+            if alike.count_ones() <= ALIKE {
                 loners |= alike;
             } else {
                 hit |= self.descend::<L, ANY>(packet, alike, &octant);
@@ -139,7 +143,8 @@ impl Bvh {
         // A single node has nothing to leave out.
         let beam = (self.nodes.len() > 1).then(|| Beam::new::<L>(packet, all, octant.side));
         let mut farthest = packet.farthest::<L>(all);
-        let (mut near, mut keys) = ([0.0; node::WIDTH], [0; node::WIDTH]);
+        let mut near = [0.0; node::WIDTH];
+        let (mut t, mut slots) = ([0.0; node::WIDTH], [0; node::WIDTH]);
         let (mut hit, mut rays, mut child) = (0, all, Child::ROOT);
         packet.waiting.clear();
         loop {
@@ -159,11 +164,10 @@ impl Bvh {
                         Some(beam) => beam.meet::<L>(node, farthest, &mut near),
                         None => node.used(),
                     };
-                    let count = farthest_first(met, &near, &mut keys);
-                    for &key in &keys[..count] {
-                        let slot = key as usize & 7;
-                        self.prefetch(node.child[slot]);
-                        packet.waiting.push(BeamWaiting { t: near[slot], rays, node: number, slot: slot as u32 });
+                    L::sort_descending(met, &near, &[0, 1, 2, 3, 4, 5, 6, 7], (&mut t, &mut slots));
+                    for (&t, &slot) in t.iter().zip(&slots).take(met.count_ones() as usize) {
+                        self.prefetch(node.child[slot as usize & 7]);
+                        packet.waiting.push(BeamWaiting { t, rays, node: number, slot: slot as u32 });
                     }
                 }
             }
@@ -281,45 +285,6 @@ fn vector<L: Lanes>(numbers: &[f64], stride: usize, i: usize, columns: [usize; 3
     Vec3::new(numbers[x * stride + i], numbers[y * stride + i], numbers[z * stride + i]).splat()
 }
 
-/// The nearest hits of some rays while a leaf is tested.
-struct Nearest<L: Lanes> {
-    active: L::Mask,
-    t_min: L,
-    source: L,
-    t: L,
-    primitive: L,
-    hit: L::Mask,
-}
-
-impl<L: Lanes> Nearest<L> {
-    #[inline(always)]
-    fn load(packet: &Packet, start: usize, active: L::Mask) -> Self {
-        Self {
-            active,
-            t_min: L::load(&packet.t_min[start..]),
-            source: L::load(&packet.source[start..]),
-            t: L::load(&packet.t[start..]),
-            primitive: L::load(&packet.primitive[start..]),
-            hit: L::Mask::from_bits(0),
-        }
-    }
-
-    /// Keeps a hit where it is nearer; at equal distance that of the lower id.
-    #[inline(always)]
-    fn keep(&mut self, t: L, meets: L::Mask, id: f64) {
-        let meets = meets & self.active;
-        if !meets.any() {
-            return;
-        }
-        let id = L::splat(id);
-        let closer = t.lt(self.t) | (t.eq(self.t) & id.lt(self.primitive));
-        let kept = meets & t.gt(self.t_min) & closer & !self.source.eq(id);
-        self.hit = self.hit | kept;
-        self.t = L::select(kept, t, self.t);
-        self.primitive = L::select(kept, id, self.primitive);
-    }
-}
-
 /// Which of these rays meet one box of a node.
 #[inline(always)]
 fn enter<L: Lanes>(packet: &Packet, node: &Node, slot: usize, rays: u64, side: [usize; 3]) -> u64 {
@@ -327,9 +292,9 @@ fn enter<L: Lanes>(packet: &Packet, node: &Node, slot: usize, rays: u64, side: [
     for (start, active) in groups::<L>(rays) {
         let (mut enter, mut leave) = (L::load(&packet.t_min[start..]), L::load(&packet.t[start..]));
         for axis in 0..3 {
-            let side = side[axis] & 1;
-            let near = L::splat(f64::from(node.side(axis, side)[slot]));
-            let far = L::splat(f64::from(node.side(axis, 1 - side)[slot]));
+            let first = plane(axis, side[axis] & 1);
+            let near = L::splat(f64::from(node.planes[first][slot]));
+            let far = L::splat(f64::from(node.planes[first ^ 1][slot]));
             let (o, i) = (L::load(&packet.origin[axis][start..]), L::load(&packet.inv_dir[axis][start..]));
             enter = ((near - o) * i).max(enter);
             leave = ((far - o) * i).min(leave);

@@ -3,6 +3,7 @@
 //! GPUs Through Compressed Wide BVHs*, 2017, section 3.1).
 
 use super::item::Extent;
+use crate::geometry::bounds::OuterBox;
 use crate::geometry::bvh::node::{Child, Leaf, Node, Tree, WIDTH};
 use rayon::prelude::*;
 
@@ -257,10 +258,7 @@ fn make<'a>(job: Job<'a>, largest_part: usize, part: &mut Part, jobs: &mut Vec<J
         let child = at.node();
         let (own, rest) = order.split_at_mut(child.count as usize);
         order = rest;
-        for axis in 0..3 {
-            part.nodes[index].min[axis][place] = child.min[axis];
-            part.nodes[index].max[axis][place] = child.max[axis];
-        }
+        part.nodes[index].set_bounds(place, &OuterBox { min: child.min, max: child.max });
         if child.is_leaf() {
             own.sort_unstable();
             part.nodes[index].child[place] = Child::leaf(part.leaves.len());

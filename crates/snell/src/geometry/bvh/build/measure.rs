@@ -103,7 +103,7 @@ pub(super) fn cost(tree: &Tree) -> f64 {
     let (mut all, mut root) = (0.0, OuterBox { min: [f32::INFINITY; 3], max: [f32::NEG_INFINITY; 3] });
     for (index, node) in tree.nodes.iter().enumerate() {
         for place in 0..WIDTH {
-            let (min, max) = (node.min.map(|m| m[place]), node.max.map(|m| m[place]));
+            let OuterBox { min, max } = node.bounds(place);
             match node.child[place].kind() {
                 Kind::Node(_) => all += collapse::NODE_COST * area(min, max),
                 Kind::Leaf(leaf) => all += collapse::leaf_cost(tree.leaves[leaf as usize].count, area(min, max)),

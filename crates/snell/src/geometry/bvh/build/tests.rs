@@ -1,6 +1,6 @@
 use super::measure::{cost, flake, knot, stadium, sticks};
 use super::*;
-use crate::geometry::bvh::node::{Child, Kind, Node, WIDTH};
+use crate::geometry::bvh::node::{Child, Kind, WIDTH};
 use proptest::prelude::*;
 
 const QUALITIES: [Quality; 3] = [Quality::Fast, Quality::Good, Quality::Best];
@@ -11,10 +11,6 @@ fn cube(x: f32, y: f32, z: f32) -> OuterBox {
 
 fn tree_of(boxes: &[OuterBox], quality: Quality, threads: usize) -> Tree {
     crate::threads::share(threads, |parallel| build(boxes.len(), |i| boxes[i], quality, parallel))
-}
-
-fn place(node: &Node, place: usize) -> OuterBox {
-    OuterBox { min: node.min.map(|min| min[place]), max: node.max.map(|max| max[place]) }
 }
 
 fn holds(outer: &OuterBox, inner: &OuterBox) -> bool {
@@ -34,7 +30,7 @@ fn check(tree: &Tree, boxes: &[OuterBox]) {
         let used = node.child.iter().take_while(|&&child| child != Child::NOTHING).count();
         assert!(used > 0, "an empty node");
         for i in 0..WIDTH {
-            let bounds = place(node, i);
+            let bounds = node.bounds(i);
             match node.child[i].kind() {
                 Kind::Nothing | Kind::Block(_) => {
                     assert!(i >= used, "an unused place before a used one");
@@ -68,7 +64,7 @@ fn check(tree: &Tree, boxes: &[OuterBox]) {
 
 fn bits(tree: &Tree) -> Vec<u32> {
     let nodes = tree.nodes.iter().flat_map(|node| {
-        let numbers = node.min.iter().chain(&node.max).flatten().map(|x| x.to_bits());
+        let numbers = node.planes.iter().flatten().map(|x| x.to_bits());
         let children = node.child.iter().map(|child| match child.kind() {
             Kind::Node(n) => n,
             Kind::Leaf(n) => !n,
