@@ -1,4 +1,5 @@
 //! Optics as pure functions: no scene, no queue, one formula each.
 
+pub mod fresnel;
 pub mod phong;
 pub mod snell;
