@@ -1,5 +1,6 @@
 //! Optics as pure functions: no scene, no queue, one formula each.
 
+pub mod absorption;
 pub mod fresnel;
 pub mod phong;
 pub mod snell;
