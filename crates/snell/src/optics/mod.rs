@@ -4,3 +4,4 @@ pub mod absorption;
 pub mod fresnel;
 pub mod phong;
 pub mod snell;
+pub mod thin;
