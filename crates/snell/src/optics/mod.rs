@@ -3,6 +3,7 @@
 pub mod absorption;
 pub mod dispersion;
 pub mod fresnel;
+pub mod glass;
 pub mod phong;
 pub mod snell;
 pub mod thin;
