@@ -6,4 +6,5 @@ pub mod fresnel;
 pub mod glass;
 pub mod phong;
 pub mod snell;
+pub mod spectrum;
 pub mod thin;
