@@ -33,6 +33,7 @@ macro_rules! operators {
 mod array;
 mod columns;
 pub mod elementary;
+mod exp;
 #[cfg(target_arch = "aarch64")]
 mod neon;
 mod pow;
@@ -46,6 +47,7 @@ mod x86;
 
 pub use array::ArrayLanes;
 pub(crate) use columns::Columns;
+pub use exp::exp;
 pub use pow::pow;
 pub use width::{LaneWidth, dispatch};
 

@@ -8,10 +8,7 @@
 //! does the same work.
 
 use super::Lanes;
-use std::f64::consts::LOG2_E;
-
-/// `ln 2` in two parts. The first ends at 2⁻⁴⁰, so that its product with a number of 12 bits is exact.
-const LN_2: [f64; 2] = [0.693_147_180_559_208_2, 7.371_002_565_167_799e-13];
+use super::exp::{LN_2, exp_of_sum, horner};
 
 /// √2 rounded to a multiple of 2⁻²⁵, and how much its logarithm exceeds `½ ln 2`.
 const CENTER: f64 = 1.414_213_567_972_183_2;
@@ -24,27 +21,6 @@ const BETWEEN_CENTERS: f64 = 1.189_207_115_002_721;
 /// algorithm in 250 bits; relative error of the polynomial 2⁻⁵⁵).
 const ATANH_EVEN: [f64; 3] = [0.012_499_999_999_999_999, 0.000_434_027_777_478_107_04, 1.877_729_660_612_527e-5];
 const ATANH_ODD: [f64; 3] = [0.002_232_142_857_143_625_5, 8.877_845_181_781_089e-5, 4.150_507_229_081_94e-6];
-
-/// `exp(r) = 1 + r + r²/2 + r³ U(r)`: `U`, whose series is 1/6 + r/24 + ..., for |r| up to `½ ln 2` (as above; error of
-/// `r³ U(r)` 2⁻⁶³ of `exp(r)`).
-const EXP_EVEN: [f64; 5] = [
-    0.166_666_666_666_666_8,
-    0.008_333_333_333_318_543,
-    0.000_198_412_698_933_065_66,
-    2.755_723_748_915_401_5e-6,
-    2.511_123_434_156_199_4e-8,
-];
-const EXP_ODD: [f64; 5] = [
-    0.041_666_666_666_666_415,
-    0.001_388_888_888_903_311_4,
-    2.480_158_702_583_927_3e-5,
-    2.755_752_595_694_014e-7,
-    2.083_853_523_793_730_7e-9,
-];
-
-/// Added and taken away again, they round to a whole number, and to a multiple of 2⁻²⁸.
-const TO_WHOLE: f64 = 6_755_399_441_055_744.0; // 1.5·2^52
-const TO_28_BITS: f64 = 25_165_824.0; // 1.5·2^24
 
 /// `base^exponent` for `base >= 0`.
 ///
@@ -102,32 +78,8 @@ pub fn pow<L: Lanes>(base: L, exponent: L) -> L {
     let product_head = exponent_head * ln_head;
     let product_rest = (exponent - exponent_head) * ln_head + exponent * ln_rest;
 
-    // exp: power_ln = k ln 2 + r + rest, |r| <= ½ ln 2. As a multiple of 2^-28, r has exact 1 + r and r²; exp(rest) is
-    // 1 + rest, the next term being below 2^-58.
-    let k = (power_ln * number(LOG2_E) + number(TO_WHOLE)) - number(TO_WHOLE);
-    let (remainder, remainder_rest) = (product_head - k * ln_2, product_rest - k * ln_2_rest);
-    let r = ((remainder + remainder_rest) + number(TO_28_BITS)) - number(TO_28_BITS);
-    let rest = (remainder - r) + remainder_rest;
-    let rr = r * r;
-    let tail = rr * number(0.5) + (r * rr) * (horner(rr, EXP_EVEN) + r * horner(rr, EXP_ODD));
-    let sum = number(1.0) + r;
-    let power = sum + (tail + rest * (sum + tail));
-
-    // Outside of these bounds, which lie a little outside of the range of doubles, all that was done is worth nothing.
-    let power = L::select(power_ln.gt(number(710.0)), infinity, power.times_exp2(k));
-    let power = L::select(power_ln.lt(number(-746.0)), number(0.0), power);
+    let power = exp_of_sum(power_ln, product_head, product_rest);
     L::select(exponent.eq(number(0.0)) | base.eq(number(1.0)), number(1.0), power)
-}
-
-/// `c₀ + x (c₁ + x (c₂ + ...))`.
-#[inline(always)]
-fn horner<L: Lanes, const N: usize>(x: L, coefficients: [f64; N]) -> L {
-    // No `fold`: a closure may become a function of its own, without the instructions of the width.
-    let mut sum = L::splat(coefficients[N - 1]);
-    for i in (0..N - 1).rev() {
-        sum = L::splat(coefficients[i]) + x * sum;
-    }
-    sum
 }
 
 #[cfg(test)]

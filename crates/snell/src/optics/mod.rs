@@ -1,4 +1,10 @@
 //! Optics as pure functions: no scene, no queue, one formula each.
 
+pub mod absorption;
+pub mod dispersion;
+pub mod fresnel;
+pub mod glass;
 pub mod phong;
 pub mod snell;
+pub mod spectrum;
+pub mod thin;
