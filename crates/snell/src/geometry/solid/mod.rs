@@ -90,7 +90,9 @@ impl Outline {
         let no_inside = |c: &&mut Component| !(c.is_closed() && c.is_oriented());
         report.components.iter_mut().filter(no_inside).for_each(|c| c.orientation = Orientation::None);
         let turned = turned(&topology, &mut parts, &report);
-        turned.iter().for_each(|&face| report.against.add(|| place(mesh, face)));
+        for &face in &turned {
+            report.against.add(|| place(mesh, face));
+        }
 
         let (with_area, flat) = with_area(topology.whole(), &points, &topology.corners);
         let mut flat = flat.into_iter().peekable();
@@ -103,7 +105,9 @@ impl Outline {
             }
         }
         let copies = topology.duplicates();
-        copies.iter().for_each(|&(face, _)| report.duplicate.add(|| place(mesh, face)));
+        for &(face, _) in &copies {
+            report.duplicate.add(|| place(mesh, face));
+        }
         Self { topology, report, turned, copies, points, with_area }
     }
 
@@ -219,7 +223,9 @@ fn count_vertices(topology: &Topology, report: &mut Report) {
     let mut corners: Vec<(u32, u32)> = topology.whole().flat_map(at).collect();
     corners.sort_unstable();
     corners.dedup();
-    corners.iter().for_each(|&(_, component)| report.components[component as usize].vertices += 1);
+    for &(_, component) in &corners {
+        report.components[component as usize].vertices += 1;
+    }
     report.vertices = corners.chunk_by(|a, b| a.0 == b.0).count();
 }
 

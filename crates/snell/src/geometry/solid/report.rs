@@ -129,7 +129,7 @@ impl Component {
 /// What can be said in one word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// Closed, consistently oriented, outward.
+    /// Closed, consistently oriented, with a volume, outward.
     Solid,
     /// Closed and consistently oriented, but a component is inside out.
     InsideOut,

@@ -98,7 +98,9 @@ impl Topology {
                 },
             }
         }
-        unclear.into_iter().for_each(|edge| join_odd(&mut parts, edge));
+        for edge in unclear {
+            join_odd(&mut parts, edge);
+        }
         parts
     }
 
@@ -170,7 +172,9 @@ pub(super) fn places(vertices: &[Vec3]) -> Vec<u32> {
     sorted.sort_unstable();
     let mut place = vec![0; vertices.len()];
     for same in sorted.chunk_by(|a, b| a.0 == b.0) {
-        same.iter().for_each(|&(_, vertex)| place[vertex as usize] = same[0].1);
+        for &(_, vertex) in same {
+            place[vertex as usize] = same[0].1;
+        }
     }
     place
 }

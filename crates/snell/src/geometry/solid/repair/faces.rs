@@ -43,6 +43,8 @@ pub(super) fn remove_copies(mesh: &mut TriangleMesh) -> usize {
 /// Turns faces so that neighbours agree, the fewer ones of each component that can be; returns how many.
 pub(super) fn agree(mesh: &mut TriangleMesh) -> usize {
     let turned = Outline::of(mesh).turned;
-    turned.iter().for_each(|&face| mesh.faces[face as usize].swap(1, 2));
+    for &face in &turned {
+        mesh.faces[face as usize].swap(1, 2);
+    }
     turned.len()
 }

@@ -132,7 +132,9 @@ fn loops(rims: &[Rim], vertices: usize) -> Vec<Vec<Rim>> {
             let back = on_path[at as usize];
             if back != NOWHERE {
                 let ring = path.split_off(back as usize);
-                ring.iter().for_each(|r| on_path[r.from as usize] = NOWHERE);
+                for r in &ring {
+                    on_path[r.from as usize] = NOWHERE;
+                }
                 found.push(ring);
                 if path.is_empty() {
                     break;
@@ -145,7 +147,9 @@ fn loops(rims: &[Rim], vertices: usize) -> Vec<Vec<Rim>> {
                 rims.get(*i).filter(|r| r.from == at).map(|_| *i)
             });
         }
-        path.iter().for_each(|r| on_path[r.from as usize] = NOWHERE);
+        for r in &path {
+            on_path[r.from as usize] = NOWHERE;
+        }
     }
     found
 }

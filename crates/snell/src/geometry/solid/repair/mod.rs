@@ -8,6 +8,8 @@
 mod faces;
 mod holes;
 mod lines;
+#[cfg(test)]
+mod tests;
 mod weld;
 
 use super::topology::{Kind, Topology};
@@ -54,11 +56,27 @@ pub struct RepairLog {
 }
 
 impl RepairLog {
+    fn add(&mut self, more: &Self) {
+        self.welded_vertices += more.welded_vertices;
+        self.broken_faces += more.broken_faces;
+        self.degenerate_faces += more.degenerate_faces;
+        self.duplicate_faces += more.duplicate_faces;
+        self.turned_faces += more.turned_faces;
+        self.turned_components += more.turned_components;
+        self.filled_holes += more.filled_holes;
+        self.new_faces += more.new_faces;
+        self.unused_vertices += more.unused_vertices;
+    }
+
     /// Was there nothing to do?
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
     }
 }
+
+/// What one round mends can bring to light what another mends, in meshes that are hardly surfaces. After so many it is
+/// enough.
+const ROUNDS: usize = 8;
 
 /// A mended mesh, and what was done to it. A solid stays one; what cannot be mended is left, and
 /// [`check`](super::check) says of it.
@@ -75,19 +93,31 @@ pub fn repair(mesh: &TriangleMesh, options: &Options) -> (TriangleMesh, RepairLo
 }
 
 fn mend(mesh: &TriangleMesh, options: &Options) -> (TriangleMesh, RepairLog) {
-    let (mut mesh, mut log) = (mesh.clone(), RepairLog::default());
-    let kinds = Topology::of(&mesh).kinds;
-    log.broken_faces = keep(&mut mesh, |face| kinds[face] != Kind::Broken);
-    log.welded_vertices = weld::weld(&mut mesh, options.weld.clamp(0.0, 0.1));
-    let kinds = Topology::of(&mesh).kinds;
-    log.degenerate_faces = keep(&mut mesh, |face| kinds[face] == Kind::Whole);
-    log.duplicate_faces = faces::remove_copies(&mut mesh);
-    log.turned_faces = faces::agree(&mut mesh);
-    (log.filled_holes, log.new_faces) = holes::fill(&mut mesh, options.largest_hole.min(1000));
-    log.degenerate_faces += lines::mend(&mut mesh);
-    log.turned_components = turn_outward(&mut mesh);
-    log.unused_vertices = weld::drop_unused(&mut mesh) - log.welded_vertices;
-    (mesh, log)
+    let (mut mesh, mut done) = (mesh.clone(), RepairLog::default());
+    for _ in 0..ROUNDS {
+        let log = round(&mut mesh, options);
+        done.add(&log);
+        if log.is_empty() {
+            break;
+        }
+    }
+    (mesh, done)
+}
+
+fn round(mesh: &mut TriangleMesh, options: &Options) -> RepairLog {
+    let mut log = RepairLog::default();
+    let kinds = Topology::of(mesh).kinds;
+    log.broken_faces = keep(mesh, |face| kinds[face] != Kind::Broken);
+    log.welded_vertices = weld::weld(mesh, options.weld.clamp(0.0, 0.1));
+    let kinds = Topology::of(mesh).kinds;
+    log.degenerate_faces = keep(mesh, |face| kinds[face] == Kind::Whole);
+    log.duplicate_faces = faces::remove_copies(mesh);
+    log.turned_faces = faces::agree(mesh);
+    (log.filled_holes, log.new_faces) = holes::fill(mesh, options.largest_hole.min(1000));
+    log.degenerate_faces += lines::mend(mesh);
+    log.turned_components = turn_outward(mesh);
+    log.unused_vertices = weld::drop_unused(mesh).saturating_sub(log.welded_vertices);
+    log
 }
 
 /// Keeps the faces that are wanted; returns how many are gone.
