@@ -30,7 +30,7 @@ pub fn parse_ply(name: &str, bytes: &[u8]) -> Result<TriangleMesh, Report> {
             let words = words(&source.text[start..], start);
             read_elements(&header, &elements, &mut Text { source: &source, words, last: start..start })
         }
-        Format::Bytes { big } => read_elements(&header, &elements, &mut Bytes { name, bytes, at: body, big }),
+        Format::Bytes { big } => read_elements(&header, &elements, &mut Bytes { name, data: bytes, at: body, big }),
     }
 }
 
@@ -84,7 +84,7 @@ struct Element {
 }
 
 /// The header as a text, and where what follows begins.
-fn split<'a>(name: &str, bytes: &'a [u8]) -> Result<(Source, usize), Report> {
+fn split(name: &str, bytes: &[u8]) -> Result<(Source, usize), Report> {
     let mut at = 0;
     for line in bytes.split_inclusive(|&b| b == b'\n') {
         at += line.len();
@@ -176,14 +176,14 @@ impl<'a, W: Iterator<Item = Word<'a>>> Numbers for Text<'a, W> {
 
 struct Bytes<'a> {
     name: &'a str,
-    bytes: &'a [u8],
+    data: &'a [u8],
     at: usize,
     big: bool,
 }
 
 impl Bytes<'_> {
     fn take<const N: usize>(&mut self) -> Result<[u8; N], Report> {
-        let bytes = self.bytes.get(self.at..self.at + N).and_then(|b| <[u8; N]>::try_from(b).ok());
+        let bytes = self.data.get(self.at..self.at + N).and_then(|b| <[u8; N]>::try_from(b).ok());
         let Some(mut bytes) = bytes else {
             return Err(self.error("the file ends too early".to_owned()).help("is it complete?"));
         };

@@ -50,7 +50,9 @@ impl Shapes {
     }
 
     pub fn smooth(&mut self, polygons: &[Vec<Vec3>], range: Range<usize>) {
-        polygons.iter().for_each(|corners| self.smooth.polygon(corners, range.clone()));
+        for corners in polygons {
+            self.smooth.polygon(corners, range.clone());
+        }
     }
 
     fn end_meshes(&mut self) {
