@@ -245,9 +245,10 @@ Examples:
   snell check scene.toml                           all meshes of a scene
   snell check part.ply --json
 
-A solid is closed (every edge has two faces, or an even number), its faces look the same way, and it has a volume. One that
-is inside out is a solid, and is said to be. Faces are the triangles into which polygons are divided, counted from 0. With
---repair the exit code is that of the mended model.
+A solid is closed (every edge has two faces, or an even number), its faces look the same way,
+and it has a volume. One that is inside out is a solid, and is said to be. Faces are the
+triangles into which polygons are divided, counted from 0. With --repair the exit code is that
+of the mended model.
 
 Exit codes: 0 a solid, 1 no solid, 2 wrong usage, 3 the model cannot be read")]
 pub struct CheckArgs {

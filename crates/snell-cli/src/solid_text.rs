@@ -17,8 +17,11 @@ pub fn as_text(name: &str, mesh: &TriangleMesh, report: &Report, advice: &str) -
         let _ = writeln!(text, "  {name:15}{value}");
     };
     let gone = mesh.faces.len() - report.faces;
-    let gone =
-        if gone > 0 { format!(" of {}; the others have no three corners", mesh.faces.len()) } else { String::new() };
+    let gone = if gone > 0 {
+        format!(" of {}; the others have no three different corners", mesh.faces.len())
+    } else {
+        String::new()
+    };
     line("faces", format!("{}{gone}", report.faces));
     let apart = mesh.vertices.len() != report.vertices;
     let apart = if apart { format!(" (places; {} in the file)", mesh.vertices.len()) } else { String::new() };

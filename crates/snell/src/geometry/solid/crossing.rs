@@ -5,18 +5,21 @@ use super::report::{Crossing, Found};
 use super::tree::{Budget, Tree};
 use crate::geometry::{Bounds, Vec3};
 
-/// Steps of the search for crossings: for each face about ten times what usual meshes need.
-const CROSSING_STEPS: u64 = 1000;
+/// Steps of the search for crossings, for each face. Usual meshes need about 80.
+const CROSSING_STEPS: u64 = 400;
 
 /// Steps of the search for cavities: for each face enough to look at all faces of the mesh some times over.
 const CAVITY_STEPS: u64 = 50;
 
-fn budget(faces: usize, each: u64) -> Budget {
-    Budget(1_000_000 + each * faces as u64)
-}
+/// Steps of a search in any mesh: enough for two fans of a thousand faces, all pairs of which meet in a vertex.
+const LEAST_STEPS: u64 = 30_000_000;
 
-/// Steps that an exact look at two faces counts for: up to microseconds, where they are in one plane.
-const LOOK: u64 = 30;
+/// Steps that an exact look at two faces counts for: a microsecond where they are in one plane.
+const LOOK: u64 = 10;
+
+fn budget(faces: usize, each: u64) -> Budget {
+    Budget(LEAST_STEPS + each * faces as u64)
+}
 
 /// Faces by their places, for questions about where they meet.
 pub(super) struct Shapes<'a> {

@@ -126,21 +126,31 @@ impl Outline {
         self.report.complete &= complete;
     }
 
-    /// Nothing may be enclosed less than not at all: outside of a component, and inside of it, the surfaces wind 0 times or
-    /// more around a point. So what looks inward must lie in something else, and is then a cavity.
+    /// Nothing may be enclosed less than not at all: the surfaces wind 0 times or more around every point. So what looks
+    /// inward must lie in something else, and is then a cavity. Each component is asked just within, under its largest face:
+    /// on the face itself another one may lie.
     fn find_cavities(&mut self) {
         let Self { topology, report, points, with_area, .. } = self;
         if !report.components.iter().any(|c| c.orientation == Orientation::Inward) {
             return;
         }
-        let mut first = vec![None; report.components.len()];
-        for &face in with_area.iter().rev() {
-            first[report.component_of[face as usize] as usize] = Some(topology.corners[face as usize][0]);
+        let mut within = vec![(0.0, None); report.components.len()];
+        for &face in with_area.iter() {
+            let number = report.component_of[face as usize] as usize;
+            let [a, b, c] = topology.corners[face as usize].map(|v| points[v as usize]);
+            let normal = (b - a).cross(c - a);
+            let size = normal.length();
+            if size > within[number].0 {
+                // A millionth of the size of the face: thinner than any wall, thicker than roundings.
+                let depth = if report.components[number].orientation == Orientation::Inward { 1e-6 } else { -1e-6 };
+                let under = (a + b + c) * (1.0 / 3.0) + normal.unit() * (depth * size.sqrt());
+                within[number] = (size, Some(under).filter(|p| p.is_finite()));
+            }
         }
         let asked: Vec<(u32, Vec3)> = (0u32..)
             .zip(&report.components)
             .filter(|(_, component)| component.is_solid())
-            .filter_map(|(number, _)| first[number as usize].map(|v: u32| (number, points[v as usize])))
+            .filter_map(|(number, _)| within[number as usize].1.map(|p| (number, p)))
             .collect();
         let solid: Vec<u32> = with_area
             .iter()
@@ -152,9 +162,9 @@ impl Outline {
         for ((number, _), winding) in asked.iter().zip(shapes.windings(&asked, others)) {
             report.complete &= winding.is_some();
             let component = &mut report.components[*number as usize];
-            let (outside, inward) = (winding.unwrap_or(0), component.orientation == Orientation::Inward);
-            component.cavity = inward && outside > 0;
-            component.inside_out = outside < 0 || (inward && outside == 0);
+            let (others, inward) = (winding.unwrap_or(0), component.orientation == Orientation::Inward);
+            component.cavity = inward && others > 0;
+            component.inside_out = others < 0 || (inward && others == 0);
         }
     }
 }

@@ -198,6 +198,32 @@ fn copies_of_faces() {
     assert_eq!((report.verdict(), report.components.len(), report.non_manifold.count), (Verdict::Solid, 2, 5));
     assert_eq!((report.components[0].volume, report.components[1].faces), (1.0, 12));
     assert_eq!(mended(&touching).1.duplicate_faces, 0);
+    for (which, m) in [
+        both(turned(cube([0., 0., 0.], 1.0)), &cube([1., 0., 0.], 1.0)),
+        both(cube([0., 0., 0.], 1.0), &turned(cube([1., 0., 0.], 1.0))),
+    ]
+    .iter()
+    .enumerate()
+    {
+        let components = check(m).components;
+        // The two walls look the same way now, and are one too many.
+        assert!(components.len() != 2 || components[which].inside_out && !components[1 - which].inside_out);
+    }
+    // Around a cube all of whose vertices are others' too.
+    let cross = [
+        [1., 0., 0.],
+        [0., 1., 0.],
+        [0., 0., 1.],
+        [2., 1., 1.],
+        [1., 2., 1.],
+        [1., 1., 2.],
+        [0., 1., 1.],
+        [1., 0., 1.],
+    ];
+    let stack = cross.iter().fold(turned(cube([9., 0., 0.], 1.0)), |m, &at| both(m, &cube(at, 1.0)));
+    let report = check(&both(stack, &cube([1., 1., 1.], 1.0)));
+    assert_eq!(report.components.iter().filter(|c| c.inside_out).count(), 1, "{report:?}");
+    assert!(report.components[0].inside_out);
     // Every face for both of its sides.
     let m = cube([0., 0., 0.], 1.0);
     let (single, log) = mended(&both(m.clone(), &turned(m.clone())));
@@ -333,6 +359,8 @@ fn hostile_meshes_are_fast() {
     let n = 200_000u32;
     let number = |i: u32| f64::from(i.wrapping_mul(2_654_435_761) % 1_000_003) / 1e6;
     let at_random = |i: u32| [number(3 * i), number(3 * i + 1), number(3 * i + 2)];
+    let (usual, start) = (torus(600, 300), Instant::now());
+    assert!(check(&usual).complete && start.elapsed() < Duration::from_mins(1));
     let soup: Vec<[f64; 3]> = (0..3 * n).map(at_random).collect();
     let own: Vec<[u32; 3]> = (0..n).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
     let tetras: Vec<TriangleMesh> = vec![turned(tetra())];

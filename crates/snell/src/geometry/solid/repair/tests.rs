@@ -58,7 +58,9 @@ proptest! {
         prop_assert_eq!(once_and_for_all(&whole)?.faces.len(), whole.faces.len());
         let mut damaged = whole;
         let count = damaged.faces.len();
-        turned.iter().for_each(|t| damaged.faces[t % count].swap(0, 1));
+        for t in turned {
+            damaged.faces[t % count].swap(0, 1);
+        }
         for g in gone {
             damaged.faces.remove(g % damaged.faces.len());
             damaged.face_slots.pop();
