@@ -14,8 +14,8 @@ const TETRA: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3
 /// The report as JSON, and the exit code.
 fn json(folder: &Path, arguments: &[&str]) -> (Value, i32) {
     let output = snell(folder, &[&["check", "--json"], arguments].concat());
-    let value = serde_json::from_str(&stdout(&output));
-    (value.unwrap_or_else(|e| panic!("{e}: {}", stderr(&output))), output.status.code().unwrap())
+    assert!(!output.stdout.is_empty(), "{}", stderr(&output));
+    (serde_json::from_str(&stdout(&output)).unwrap(), output.status.code().unwrap())
 }
 
 #[test]
