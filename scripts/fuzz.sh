@@ -10,7 +10,7 @@ export RUSTFLAGS='--cfg fuzzing -Cpasses=sancov-module -Cllvm-args=-sanitizer-co
     -Cllvm-args=-sanitizer-coverage-trace-compares -Ccodegen-units=1'
 host=$(rustc -vV | sed -n 's/^host: //p')
 cargo build --locked --release --features run --manifest-path fuzz/Cargo.toml --target "$host"
-for target in scene driver obj picture; do
+for target in scene driver obj ply stl nff picture; do
     printf '\n── fuzzing %s\n' "$target"
     mkdir -p "fuzz/corpus/$target"
     seeds=("fuzz/seeds/$target")

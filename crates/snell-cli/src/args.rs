@@ -37,6 +37,7 @@ pub enum Command {
     Scenes(ScenesArgs),
     Convert(ConvertArgs),
     Diff(DiffArgs),
+    Check(CheckArgs),
     /// Print the JSON Schema of scene files, for editors
     Schema,
     /// Print completions for a shell
@@ -232,6 +233,49 @@ pub struct DiffArgs {
     /// Write a picture of the difference, brightened so that the largest is white
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
+}
+
+/// Say whether a model is a solid, so that light can refract in it, and mend it; exit code 1 if it is not
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  snell check bunny.obj                            closed? oriented? where not?
+  snell check bunny.obj --repair -o mended.obj     fills holes, turns faces, welds, removes copies
+  snell check scan.stl --repair -o mended.obj --weld 1e-6
+  snell check scene.toml                           all meshes of a scene
+  snell check part.ply --json
+
+A solid is closed (every edge has two faces, or an even number), its faces look the same way,
+and it has a volume. One that is inside out is a solid, and is said to be. Faces are the
+triangles into which polygons are divided, counted from 0. With --repair the exit code is that
+of the mended model.
+
+Exit codes: 0 a solid, 1 no solid, 2 wrong usage, 3 the model cannot be read")]
+pub struct CheckArgs {
+    /// A model (.obj .ply .stl), or a scene with meshes
+    pub model: String,
+    /// Mend what can be mended without guessing, and write it to the file of -o
+    #[arg(long, requires = "output")]
+    pub repair: bool,
+    /// The mended model, .obj
+    #[arg(short, long, value_name = "FILE", requires = "repair")]
+    pub output: Option<PathBuf>,
+    /// Overwrite the file if there is one
+    #[arg(long, requires = "output")]
+    pub force: bool,
+    /// Vertices so near to each other become one, as a share of the model's diagonal, at most 0.1; 0: only equal ones
+    #[arg(long, value_name = "SHARE", default_value_t = 0.0, value_parser = share, requires = "repair")]
+    pub weld: f64,
+    /// Fill holes of at most so many edges; 0: none
+    #[arg(long, value_name = "EDGES", default_value_t = 100, value_parser = clap::value_parser!(u16).range(0..=1000), requires = "repair")]
+    pub holes: u16,
+    /// Print everything as JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    text.parse().ok().filter(|v| (0.0..=0.1).contains(v)).ok_or_else(|| "expected a number from 0 to 0.1".to_owned())
 }
 
 /// A value by the name that it has in scene files.

@@ -3,6 +3,7 @@
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "this is the program that talks to people")]
 
 mod args;
+mod check;
 mod convert;
 mod diff;
 mod excerpt;
@@ -12,6 +13,7 @@ mod recipe;
 mod render;
 mod say;
 mod scenes;
+mod solid_text;
 
 use args::{Arguments, Command};
 use clap::{CommandFactory, Parser};
@@ -26,6 +28,7 @@ fn main() -> ExitCode {
         Command::Scenes(args) => scenes::run(&args),
         Command::Convert(args) => convert::run(&args),
         Command::Diff(args) => diff::run(&args),
+        Command::Check(args) => check::run(&args),
         Command::Schema => say::print(&snell_formats::scene_file::schema()),
         Command::Completions { shell } => {
             let mut script = Vec::new();

@@ -2,7 +2,7 @@
 //!
 //! | in | out |
 //! | --- | --- |
-//! | [`load`](mod@load): scene files (TOML, JSON), the course's driver files, their models | [`scene_file`]: TOML, JSON, the JSON Schema |
+//! | [`load`](mod@load): scene files (TOML, JSON), the course's driver files, NFF, their models (OBJ, PLY, STL) | [`scene_file`]: TOML, JSON, the JSON Schema; [`model`]: OBJ |
 //! | [`picture`]: PNG, PPM, EXR, NPY, to compare or to read the recipe | [`picture`]: the same |
 //!
 //! Whatever is wrong with a file becomes a [`Report`] with the place, what was read, what was expected and what to do.
@@ -12,6 +12,7 @@ pub mod disk;
 pub mod driver;
 pub mod load;
 pub mod model;
+pub mod nff;
 pub mod picture;
 pub mod report;
 pub mod scene_file;

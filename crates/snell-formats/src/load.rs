@@ -1,7 +1,8 @@
 //! From a name to a scene with its models: the one way in for scene files, drivers and built-in scenes.
 
 use crate::driver::{self, Dialect, Driver};
-use crate::model::{Mirror, MtlMaterial, MtlRule, ObjModel, find, parse_mtl, parse_obj};
+use crate::model::{Mirror, MtlMaterial, MtlRule, ObjModel, find, parse_model, parse_mtl};
+use crate::nff::{self, Nff};
 use crate::report::{Report, Source};
 use crate::scene_file::{self, Syntax};
 use crate::{builtin, disk};
@@ -39,6 +40,8 @@ pub enum Kind {
     Json,
     /// A driver file.
     Driver,
+    /// Haines' Neutral File Format.
+    Nff,
 }
 
 /// A file that a scene depends on besides its own text.
@@ -77,6 +80,7 @@ pub struct Loaded {
 enum Places {
     Text(Source, Syntax),
     Driver(Source, Box<Driver>),
+    Nff(Source, Box<Nff>),
 }
 
 impl Places {
@@ -84,6 +88,7 @@ impl Places {
         match self {
             Self::Text(source, syntax) => scene_file::place(steps, source, *syntax).map(|range| (source, range)),
             Self::Driver(source, driver) => driver.place(steps).map(|range| (source, range)),
+            Self::Nff(source, nff) => nff.place(steps).map(|range| (source, range)),
         }
     }
 
@@ -95,7 +100,10 @@ impl Places {
     }
 }
 
-/// Reads a scene file, a driver, or a built-in scene.
+/// A name with one of these is meant as a file.
+const ENDINGS: &[&str] = &["txt", "toml", "json", "nff"];
+
+/// Reads a scene file, a driver, an NFF file, or a built-in scene.
 ///
 /// # Errors
 /// Everything that keeps the file from being read.
@@ -105,10 +113,9 @@ pub fn load(name: &str, options: &LoadOptions) -> Result<Loaded, Vec<Report>> {
         return Err(vec![Report::error(format!("`{name}` is a folder")).help("name the scene file in it")]);
     }
     if !path.exists() {
-        // A name with an ending is meant as a file.
         return match builtin::find(name) {
             Ok(source) => load_text(source, Kind::Toml, Path::new("."), options),
-            Err(_) if path.extension().is_some_and(|e| e == "txt" || e == "toml" || e == "json") => {
+            Err(_) if path.extension().is_some_and(|e| ENDINGS.iter().any(|&ending| e == ending)) => {
                 Err(vec![Report::error(format!("there is no file `{name}`"))])
             }
             Err(report) => Err(vec![report]),
@@ -126,6 +133,7 @@ fn kind_of(path: &Path, text: &str) -> Kind {
         Some("toml") => Kind::Toml,
         Some("json") => Kind::Json,
         Some("txt") => Kind::Driver,
+        Some("nff") => Kind::Nff,
         _ => {
             let first = text.lines().map(str::trim).find(|l| !l.is_empty() && !l.starts_with('#')).unwrap_or("");
             match first {
@@ -150,12 +158,13 @@ pub fn load_text(source: Source, kind: Kind, folder: &Path, options: &LoadOption
             dialect = Some(driver.dialect);
             warnings.append(&mut driver.warnings);
             let scene = driver.scene_with_models();
-            if options.set.is_empty() {
-                (scene, Places::Driver(source.clone(), Box::new(driver)))
-            } else {
-                let text = scene_file::to_text(&scene, Syntax::Toml)?;
-                changed(Source::new(format!("{} as a scene", source.name), text), Syntax::Toml, &options.set)?
-            }
+            let places = Places::Driver(source.clone(), Box::new(driver));
+            rewritten(scene, places, &source, &options.set)?
+        }
+        Kind::Nff => {
+            let mut nff = nff::parse(&source)?;
+            warnings.append(&mut nff.warnings);
+            rewritten(nff.scene.clone(), Places::Nff(source.clone(), Box::new(nff)), &source, &options.set)?
         }
         Kind::Toml => changed(source.clone(), Syntax::Toml, &options.set)?,
         Kind::Json => changed(source.clone(), Syntax::Json, &options.set)?,
@@ -189,6 +198,15 @@ pub fn load_text(source: Source, kind: Kind, folder: &Path, options: &LoadOption
     loaded.models = reader.files;
     loaded.warnings = reader.warnings;
     Ok(loaded)
+}
+
+/// What is no scene file is changed as the scene file that it could be.
+fn rewritten(scene: Scene, places: Places, source: &Source, set: &[String]) -> Result<(Scene, Places), Report> {
+    if set.is_empty() {
+        return Ok((scene, places));
+    }
+    let text = scene_file::to_text(&scene, Syntax::Toml)?;
+    changed(Source::new(format!("{} as a scene", source.name), text), Syntax::Toml, set)
 }
 
 fn changed(source: Source, syntax: Syntax, set: &[String]) -> Result<(Scene, Places), Report> {
@@ -279,12 +297,9 @@ impl ModelReader<'_> {
         self.warnings.extend(found.warning.map(|w| loaded.places.put(w, &place)));
         let path = found.path;
         if !self.objs.contains_key(&path) {
-            let is_obj = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("obj"));
-            if !is_obj {
-                let report = Report::error(format!("`{file}` is not an OBJ model: models are read from .obj files"));
-                return Err(loaded.places.put(report, &place));
-            }
-            let ObjModel { mesh, libraries, warnings } = parse_obj(&self.read_text(&path)?)?;
+            let located = |r: Report| if r.place.is_some() { r } else { loaded.places.put(r, &place) };
+            let bytes = self.read(&path)?;
+            let ObjModel { mesh, libraries, warnings } = parse_model(&path, &bytes).map_err(located)?;
             self.warnings.extend(warnings);
             let libraries = Arc::new(self.libraries(&libraries, &path)?);
             self.objs.insert(path.clone(), (Arc::new(mesh), libraries));
@@ -308,10 +323,10 @@ impl ModelReader<'_> {
         Ok(Some(path))
     }
 
-    fn read_text(&mut self, path: &Path) -> Result<Source, Report> {
+    fn read(&mut self, path: &Path) -> Result<Vec<u8>, Report> {
         let bytes = disk::read(path, disk::MAX_MODEL_BYTES)?;
         self.files.push(ModelFile { path: path.to_owned(), sha256: disk::sha256([&bytes]) });
-        Ok(disk::text(path, &bytes))
+        Ok(bytes)
     }
 
     /// The material that a model calls `slot`: from its libraries, else the only one of an `.mtl` of the same name, else
@@ -380,7 +395,7 @@ impl ModelReader<'_> {
 
     fn read_library(&mut self, path: &Path) -> Result<&[MtlMaterial], Report> {
         if !self.mtls.contains_key(path) {
-            let (read, warnings) = parse_mtl(&self.read_text(path)?)?;
+            let (read, warnings) = parse_mtl(&disk::text(path, &self.read(path)?))?;
             self.warnings.extend(warnings);
             self.mtls.insert(path.to_owned(), read);
         }

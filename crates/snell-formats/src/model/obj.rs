@@ -1,5 +1,6 @@
 //! Wavefront OBJ: vertices, faces and the names of their materials.
 
+use super::polygon::Polygons;
 use crate::report::{Report, Source};
 use crate::words::{Word, number, words};
 use snell::geometry::{TriangleMesh, Vec3};
@@ -173,10 +174,10 @@ impl Reader<'_> {
         if let Some((vertex, range)) = self.later.iter().find(|(v, _)| *v as usize >= count) {
             return Err(self.out_of_range(i64::from(*vertex) + 1, range.clone()));
         }
-        let mut earcut = earcut::Earcut::new();
+        let mut polygons = Polygons::default();
         let mut start = 0;
         for &(end, slot) in &self.ends {
-            let triangles = triangles(&self.corners[start..end], &self.mesh.vertices, &mut earcut);
+            let triangles = polygons.triangles(&self.corners[start..end], &self.mesh.vertices);
             self.mesh.face_slots.extend(triangles.iter().map(|_| slot));
             self.mesh.faces.extend(triangles);
             start = end;
@@ -187,42 +188,6 @@ impl Reader<'_> {
         }
         Ok(ObjModel { mesh: self.mesh, libraries: self.libraries, warnings: self.warnings })
     }
-}
-
-/// A fan for triangles and convex polygons, ears for others (Meisters 1975).
-fn triangles(corners: &[u32], vertices: &[Vec3], earcut: &mut earcut::Earcut<f64>) -> Vec<[u32; 3]> {
-    let fan = || (1..corners.len() - 1).map(|i| [corners[0], corners[i], corners[i + 1]]).collect();
-    if corners.len() == 3 {
-        return fan();
-    }
-    // Seen from the first corner, so that far from the origin no digits are lost.
-    let origin = vertices[corners[0] as usize];
-    let points: Vec<Vec3> = corners.iter().map(|&v| vertices[v as usize] - origin).collect();
-    // Newell's normal tells the plane; a fan is right if no triangle of it turns the other way.
-    let normal = (0..points.len())
-        .map(|i| points[i].cross(points[(i + 1) % points.len()]))
-        .fold(Vec3::default(), |sum, c| sum + c);
-    let turns_back = points.windows(2).skip(1).any(|w| w[0].cross(w[1]).dot(normal) < 0.0);
-    if !turns_back {
-        return fan();
-    }
-    let drop = (0..3).max_by(|&a, &b| normal.component(a).abs().total_cmp(&normal.component(b).abs())).unwrap_or(2);
-    let flip = normal.component(drop) < 0.0;
-    let flat = points.iter().map(|p| {
-        let (x, y) = (p.component((drop + 1) % 3), p.component((drop + 2) % 3));
-        if flip { [y, x] } else { [x, y] }
-    });
-    let mut ears: Vec<u32> = Vec::new();
-    earcut.earcut(flat, &[], &mut ears);
-    let corner = |&i: &u32| corners[i as usize];
-    // earcut may turn all triangles around; the polygon's own sense is kept.
-    let triangles = ears.chunks_exact(3).map(|t| [corner(&t[0]), corner(&t[1]), corner(&t[2])]);
-    triangles
-        .map(|[a, b, c]| {
-            let [p, q, r] = [a, b, c].map(|v| vertices[v as usize]);
-            if (q - p).cross(r - p).dot(normal) < 0.0 { [a, c, b] } else { [a, b, c] }
-        })
-        .collect()
 }
 
 /// The words as one name, with the spaces between them.

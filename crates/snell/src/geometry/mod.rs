@@ -4,6 +4,7 @@ pub mod bounds;
 pub mod bvh;
 pub mod mesh;
 pub mod ray;
+pub mod solid;
 pub mod sphere;
 pub mod transform;
 pub mod triangle;

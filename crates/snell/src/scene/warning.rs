@@ -58,6 +58,8 @@ codes! {
     TextureIgnored = "W105" "texture-ignored",
     /// Lines that fit several dialects, or none of them fully.
     UnclearDialect = "W106" "unclear-dialect",
+    /// What a file of another format says has no equal in a scene.
+    Approximated = "W107" "approximated",
     /// The bounds were widened to keep pixels square.
     WidenedBounds = "W201" "widened-bounds",
     /// The light behind branches that were cut short.

@@ -1,0 +1,414 @@
+//! PLY (Turk 1994, "The PLY polygon file format"): text and both orders of bytes, polygons and triangle strips.
+
+use super::polygon::Polygons;
+use super::without_materials;
+use crate::report::{Report, Source};
+use crate::words::{Word, number, words};
+use snell::geometry::{TriangleMesh, Vec3};
+use std::ops::Range;
+
+/// Reads a PLY file: the elements `vertex` (`x`, `y`, `z`), `face` and `tristrips` (lists `vertex_indices` or
+/// `vertex_index`); others are passed over. Polygons become triangles. In a strip, −1 starts anew, and triangles with two
+/// equal corners only lead on to the next.
+///
+/// # Errors
+/// A header that is none, a file that ends too early, a number that is none, an index out of range, no faces.
+pub fn parse_ply(name: &str, bytes: &[u8]) -> Result<TriangleMesh, Report> {
+    let (header, body) = split(name, bytes)?;
+    let (format, elements) = read_header(&header)?;
+    match format {
+        Format::Text => {
+            let source = Source::new(name, String::from_utf8_lossy(bytes));
+            // The header ends with the first line that says so, here too.
+            let mut start = 0;
+            for line in source.text.split_inclusive('\n') {
+                start += line.len();
+                if line.trim() == "end_header" {
+                    break;
+                }
+            }
+            let words = words(&source.text[start..], start);
+            read_elements(&header, &elements, &mut Text { source: &source, words, last: start..start })
+        }
+        Format::Bytes { big } => read_elements(&header, &elements, &mut Bytes { name, data: bytes, at: body, big }),
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Format {
+    Text,
+    Bytes { big: bool },
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Type {
+    I8,
+    U8,
+    I16,
+    U16,
+    I32,
+    U32,
+    F32,
+    F64,
+}
+
+impl Type {
+    fn of(word: &str) -> Option<Self> {
+        Some(match word {
+            "char" | "int8" => Self::I8,
+            "uchar" | "uint8" => Self::U8,
+            "short" | "int16" => Self::I16,
+            "ushort" | "uint16" => Self::U16,
+            "int" | "int32" => Self::I32,
+            "uint" | "uint32" => Self::U32,
+            "float" | "float32" => Self::F32,
+            "double" | "float64" => Self::F64,
+            _ => return None,
+        })
+    }
+}
+
+struct Property {
+    name: String,
+    /// Of the number of values, for a list.
+    count: Option<Type>,
+    kind: Type,
+}
+
+struct Element {
+    name: String,
+    count: u64,
+    properties: Vec<Property>,
+    /// Its line in the header.
+    range: Range<usize>,
+}
+
+/// The header as a text, and where what follows begins.
+fn split(name: &str, bytes: &[u8]) -> Result<(Source, usize), Report> {
+    let mut at = 0;
+    for line in bytes.split_inclusive(|&b| b == b'\n') {
+        at += line.len();
+        // A header of a megabyte is none.
+        if line.trim_ascii() == b"end_header" && at < 1 << 20 {
+            return Ok((Source::new(name, String::from_utf8_lossy(&bytes[..at])), at));
+        }
+        if at >= 1 << 20 {
+            break;
+        }
+    }
+    let help = "a PLY file starts with lines like `ply`, `format ascii 1.0`, `element vertex 8`, … `end_header`";
+    Err(Report::error(format!("`{name}` has no header that ends with `end_header`")).help(help))
+}
+
+fn read_header(source: &Source) -> Result<(Format, Vec<Element>), Report> {
+    let mut format = None;
+    let mut elements: Vec<Element> = Vec::new();
+    let mut start = 0;
+    for (number, line) in source.text.split_inclusive('\n').enumerate() {
+        let line_words: Vec<Word<'_>> = words(line, start).collect();
+        let range = start..start + line.trim_end().len();
+        start += line.len();
+        let error = |message: &str| Report::error(message.to_owned()).at(source, range.clone());
+        let texts: Vec<&str> = line_words.iter().map(|w| w.text).collect();
+        match texts[..] {
+            ["ply"] if number == 0 => {}
+            _ if number == 0 => return Err(error("a PLY file starts with `ply`")),
+            [] | ["comment" | "obj_info", ..] | ["end_header"] => {}
+            ["format", name, ..] => {
+                format = Some(match name {
+                    "ascii" => Format::Text,
+                    "binary_little_endian" => Format::Bytes { big: false },
+                    "binary_big_endian" => Format::Bytes { big: true },
+                    _ => return Err(error("the format is ascii, binary_little_endian or binary_big_endian")),
+                });
+            }
+            ["element", name, count] => {
+                let count = count.parse().map_err(|_| error("an element has a name and a number"))?;
+                elements.push(Element { name: name.to_owned(), count, properties: Vec::new(), range });
+            }
+            ["property", ref rest @ ..] => {
+                let (count, kind, name) = match *rest {
+                    ["list", count, kind, name] => (Some(count), kind, name),
+                    [kind, name] => (None, kind, name),
+                    _ => return Err(error("a property is `property TYPE NAME` or `property list TYPE TYPE NAME`")),
+                };
+                let known = |word| Type::of(word).ok_or_else(|| error(&format!("`{word}` is no type of numbers")));
+                let property =
+                    Property { name: name.to_owned(), count: count.map(known).transpose()?, kind: known(kind)? };
+                let element = elements.last_mut().ok_or_else(|| error("a property stands behind its element"))?;
+                element.properties.push(property);
+            }
+            _ => return Err(error("unknown line in the header of a PLY file")),
+        }
+    }
+    let format = format.ok_or_else(|| Report::error("no line says the format").at(source, 0..0))?;
+    Ok((format, elements))
+}
+
+/// Where numbers come from.
+trait Numbers {
+    fn next(&mut self, kind: Type) -> Result<f64, Report>;
+    /// An error at the number that was read last.
+    fn error(&self, message: String) -> Report;
+}
+
+struct Text<'a, W> {
+    source: &'a Source,
+    words: W,
+    last: Range<usize>,
+}
+
+impl<'a, W: Iterator<Item = Word<'a>>> Numbers for Text<'a, W> {
+    fn next(&mut self, _: Type) -> Result<f64, Report> {
+        let Some(word) = self.words.next() else {
+            let end = self.source.text.len();
+            self.last = end..end;
+            return Err(self.error("the file ends too early".to_owned()).help("is it complete?"));
+        };
+        self.last = word.range.clone();
+        number(&word).ok_or_else(|| self.error(format!("expected a number, read `{}`", word.text)))
+    }
+
+    fn error(&self, message: String) -> Report {
+        Report::error(message).at(self.source, self.last.clone())
+    }
+}
+
+struct Bytes<'a> {
+    name: &'a str,
+    data: &'a [u8],
+    at: usize,
+    big: bool,
+}
+
+impl Bytes<'_> {
+    fn take<const N: usize>(&mut self) -> Result<[u8; N], Report> {
+        let bytes = self.data.get(self.at..self.at + N).and_then(|b| <[u8; N]>::try_from(b).ok());
+        let Some(mut bytes) = bytes else {
+            return Err(self.error("the file ends too early".to_owned()).help("is it complete?"));
+        };
+        self.at += N;
+        if self.big {
+            bytes.reverse();
+        }
+        Ok(bytes)
+    }
+}
+
+impl Numbers for Bytes<'_> {
+    fn next(&mut self, kind: Type) -> Result<f64, Report> {
+        let value = match kind {
+            Type::I8 => f64::from(i8::from_le_bytes(self.take()?)),
+            Type::U8 => f64::from(u8::from_le_bytes(self.take()?)),
+            Type::I16 => f64::from(i16::from_le_bytes(self.take()?)),
+            Type::U16 => f64::from(u16::from_le_bytes(self.take()?)),
+            Type::I32 => f64::from(i32::from_le_bytes(self.take()?)),
+            Type::U32 => f64::from(u32::from_le_bytes(self.take()?)),
+            Type::F32 => f64::from(f32::from_le_bytes(self.take()?)),
+            Type::F64 => f64::from_le_bytes(self.take()?),
+        };
+        Ok(value)
+    }
+
+    fn error(&self, message: String) -> Report {
+        Report::error(format!("`{}`, before byte {}: {message}", self.name, self.at))
+    }
+}
+
+fn read_elements(header: &Source, elements: &[Element], numbers: &mut impl Numbers) -> Result<TriangleMesh, Report> {
+    let mut mesh = TriangleMesh::default();
+    // Corners of all polygons and strips, and where each ends. They become triangles when all vertices are there.
+    let (mut corners, mut ends): (Vec<u32>, Vec<(usize, bool)>) = (Vec::new(), Vec::new());
+    // What has no properties takes no room, and would let a header promise vertices that never come.
+    let elements: Vec<&Element> = elements.iter().filter(|e| !e.properties.is_empty()).collect();
+    let vertices = elements.iter().find(|e| e.name == "vertex");
+    let vertex_count = vertices.map_or(0, |e| e.count);
+    if vertex_count > u64::from(u32::MAX) {
+        let range = vertices.map_or(0..0, |e| e.range.clone());
+        return Err(Report::error("more vertices than can be numbered").at(header, range));
+    }
+    for element in elements {
+        let place = |name| element.properties.iter().position(|p| p.name == name && p.count.is_none());
+        let positions = match (&*element.name, place("x"), place("y"), place("z")) {
+            ("vertex", Some(x), Some(y), Some(z)) => Some([x, y, z]),
+            ("vertex", ..) => {
+                let message = "a vertex needs the properties x, y and z";
+                return Err(Report::error(message).at(header, element.range.clone()));
+            }
+            _ => None,
+        };
+        let strips = element.name == "tristrips";
+        let mut row = vec![0.0; element.properties.len()];
+        for _ in 0..element.count {
+            for (property, value) in element.properties.iter().zip(&mut row) {
+                let Some(count) = property.count else {
+                    *value = numbers.next(property.kind)?;
+                    continue;
+                };
+                let length = numbers.next(count)?;
+                if !(length >= 0.0 && length.fract() == 0.0) {
+                    return Err(numbers.error(format!("a list has a number of values, read {length}")));
+                }
+                let wanted =
+                    (element.name == "face" || strips) && matches!(&*property.name, "vertex_indices" | "vertex_index");
+                let start = corners.len();
+                for _ in 0..length as u64 {
+                    let index = numbers.next(property.kind)?;
+                    if wanted {
+                        corners.push(corner(index, vertex_count, strips).map_err(|m| numbers.error(m))?);
+                    }
+                }
+                if wanted && !strips && length < 3.0 {
+                    return Err(numbers.error(format!("a face has at least 3 corners, read {length}")));
+                }
+                if corners.len() > start {
+                    ends.push((corners.len(), strips));
+                }
+            }
+            if let Some(positions) = positions {
+                let [x, y, z] = positions.map(|i| row[i]);
+                let vertex = Vec3::new(x, y, z);
+                if !vertex.is_finite() {
+                    return Err(numbers.error(format!("a vertex is not finite: {x} {y} {z}")));
+                }
+                mesh.vertices.push(vertex);
+            }
+        }
+    }
+    let mut triangulate = Polygons::default();
+    let mut start = 0;
+    for (end, strip) in ends {
+        let corners = &corners[start..end];
+        if strip {
+            mesh.faces.extend(strip_triangles(corners));
+        } else {
+            mesh.faces.extend(triangulate.triangles(corners, &mesh.vertices));
+        }
+        start = end;
+    }
+    if mesh.faces.is_empty() {
+        let help = "a model needs an element `face` or `tristrips` with a list `vertex_indices`";
+        return Err(Report::error(format!("`{}` has no faces", header.name)).help(help));
+    }
+    Ok(without_materials(mesh))
+}
+
+/// Where a strip starts anew.
+const RESTART: u32 = u32::MAX;
+
+fn corner(index: f64, count: u64, strip: bool) -> Result<u32, String> {
+    match index {
+        _ if index >= 0.0 && index < count as f64 && index.fract() == 0.0 => Ok(index as u32),
+        _ if strip && index == -1.0 => Ok(RESTART),
+        _ => Err(format!("there is no vertex {index}: the file has {count}, counted from 0")),
+    }
+}
+
+/// Every other triangle of a strip is turned around.
+fn strip_triangles(corners: &[u32]) -> impl Iterator<Item = [u32; 3]> {
+    let parts = corners.split(|&c| c == RESTART);
+    parts.flat_map(|part| part.windows(3).enumerate()).filter_map(|(i, t)| {
+        let [a, b, c] = if i % 2 == 0 { [t[0], t[1], t[2]] } else { [t[1], t[0], t[2]] };
+        (a != b && b != c && c != a).then_some([a, b, c])
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const TEXT: &str = "ply\nformat ascii 1.0\ncomment a square\nelement vertex 4\nproperty float x\nproperty float y\nproperty \
+                        uchar red\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nproperty list uchar \
+                        float uv\nelement odd 2\nproperty int a\nend_header\n0 0 255 0\n1 0 255 0\n1 1 255 0\n0 1 255 0\n4 0 1 2 3 2 .5 \
+                        .5\n7 8\n";
+
+    fn as_bytes(big: bool, last: u32) -> Vec<u8> {
+        let (head, _) = TEXT.split_at(TEXT.find("0 0 255").unwrap());
+        let name = if big { "binary_big_endian" } else { "binary_little_endian" };
+        let mut bytes = head.replace("ascii", name).into_bytes();
+        let f = |v: f32| if big { v.to_be_bytes() } else { v.to_le_bytes() };
+        let i = |v: u32| if big { v.to_be_bytes() } else { v.to_le_bytes() };
+        for [x, y] in [[0., 0.], [1., 0.], [1., 1.], [0., 1.]] {
+            bytes.extend([&f(x)[..], &f(y), &[255], &f(0.0)].concat());
+        }
+        bytes.push(4);
+        bytes.extend([0, 1, 2, last].map(i).concat());
+        bytes.push(2);
+        bytes.extend([f(0.5), f(0.5), i(7), i(8)].concat());
+        bytes
+    }
+
+    #[test]
+    fn every_format_says_the_same() {
+        let mesh = parse_ply("m.ply", TEXT.as_bytes()).unwrap();
+        assert_eq!((mesh.vertices.len(), &mesh.faces[..]), (4, &[[0, 1, 2], [0, 2, 3]][..]));
+        assert_eq!(mesh.vertices[2], Vec3::new(1.0, 1.0, 0.0));
+        assert_eq!(parse_ply("m.ply", TEXT.replace('\n', "\r\n").as_bytes()).unwrap(), mesh);
+        for big in [false, true] {
+            assert_eq!(parse_ply("m.ply", &as_bytes(big, 3)).unwrap(), mesh);
+        }
+    }
+
+    #[test]
+    fn strips_turn_every_other_triangle_and_start_anew() {
+        assert_eq!(strip_triangles(&[0, 1, 2, 3, 4]).collect::<Vec<_>>(), [[0, 1, 2], [2, 1, 3], [2, 3, 4]]);
+        let restarted = [0, 1, 2, 3, RESTART, 4, 5, 6, 6, 7, 8];
+        // The last one is the fourth of its strip, and so turned around.
+        let expected = [[0, 1, 2], [2, 1, 3], [4, 5, 6], [7, 6, 8]];
+        assert_eq!(strip_triangles(&restarted).collect::<Vec<_>>(), expected);
+        let text = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement \
+                    tristrips 1\nproperty list int int vertex_indices\nend_header\n0 0 0 1 0 0 0 1 0 1 1 0\n6 0 1 2 3 -1 0\n";
+        assert_eq!(parse_ply("s.ply", text.as_bytes()).unwrap().faces, [[0, 1, 2], [2, 1, 3]]);
+    }
+
+    #[test]
+    fn errors_name_the_place() {
+        for (from, to, line, message) in [
+            ("ply\n", "plyx\n", 1, "starts with `ply`"),
+            ("format ascii 1.0", "format utf8 1.0", 2, "the format is"),
+            ("element vertex 4", "element vertex four", 4, "a name and a number"),
+            ("element vertex 4", "element vertex 99999999999", 4, "more vertices"),
+            ("property uchar red", "property byte red", 7, "`byte` is no type"),
+            ("property float x", "property float w", 4, "x, y and z"),
+            ("element odd 2", "elephant odd 2", 12, "unknown line"),
+            ("1 1 255 0", "1 1 255 x", 17, "read `x`"),
+            ("4 0 1 2 3", "4 0 1 2 4", 19, "no vertex 4: the file has 4"),
+            ("4 0 1 2 3", "4 0 1 2 -1", 19, "no vertex -1"),
+            ("4 0 1 2 3 2", "2 0 1 2", 19, "3 corners, read 2"),
+            ("7 8\n", "7\n", 21, "ends too early"),
+        ] {
+            assert!(TEXT.contains(from), "{from}");
+            let report = parse_ply("m.ply", TEXT.replacen(from, to, 1).as_bytes()).unwrap_err();
+            let (source, range) = report.place.clone().unwrap();
+            assert!(report.message.contains(message), "{report}");
+            assert_eq!(source.line_column(range.start).0, line, "{report}");
+        }
+        let bytes = as_bytes(false, 4);
+        assert!(parse_ply("m.ply", &bytes).unwrap_err().message.contains("no vertex 4"));
+        let cut = parse_ply("m.ply", &bytes[..bytes.len() - 30]).unwrap_err();
+        assert!(cut.message.contains("before byte") && cut.message.contains("too early"), "{cut}");
+        assert!(parse_ply("m.ply", b"hello").unwrap_err().message.contains("no header"));
+        let promised = "ply\nformat ascii 1.0\nelement vertex 3\nelement face 1\nproperty list int int vertex_index\nend_header\n3 0 1 2";
+        assert!(parse_ply("m.ply", promised.as_bytes()).unwrap_err().message.contains("the file has 0"));
+        // Promises of more than there is cost nothing.
+        let many = "ply\nformat ascii 1.0\nelement none 18446744073709551615\nelement vertex 4294967295\nproperty float x\nproperty \
+                    float y\nproperty float z\nend_header\n1 2 3";
+        assert!(parse_ply("m.ply", many.as_bytes()).unwrap_err().message.contains("too early"));
+    }
+
+    proptest! {
+        #[test]
+        fn no_bytes_break_the_reader(cut in 0usize..700, change in 0usize..700, to in 0u8..=255, big in prop::bool::ANY) {
+            for mut bytes in [TEXT.as_bytes().to_vec(), as_bytes(big, 3)] {
+                bytes.truncate(cut.max(100));
+                if let Some(byte) = bytes.get_mut(change) {
+                    *byte = to;
+                }
+                if let Ok(mesh) = parse_ply("m.ply", &bytes) {
+                    prop_assert!(mesh.faces.iter().flatten().all(|&v| (v as usize) < mesh.vertices.len()));
+                }
+            }
+        }
+    }
+}

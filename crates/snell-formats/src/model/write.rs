@@ -1,0 +1,47 @@
+//! Writing a mesh as OBJ.
+
+use snell::geometry::TriangleMesh;
+use std::io::{Result, Write};
+
+/// Writes a mesh as OBJ, with the names of its material libraries. Every number is written with as many digits as bring back the same `f64`.
+///
+/// # Errors
+/// When the writer fails.
+pub fn write_obj(mesh: &TriangleMesh, libraries: &[String], out: &mut (impl Write + ?Sized)) -> Result<()> {
+    for library in libraries {
+        writeln!(out, "mtllib {library}")?;
+    }
+    for v in &mesh.vertices {
+        writeln!(out, "v {} {} {}", v.x, v.y, v.z)?;
+    }
+    let mut slot = None;
+    for (number, face) in mesh.faces.iter().enumerate() {
+        let own = mesh.face_slots.get(number).copied();
+        // Faces before the first `usemtl` have the empty name; it cannot be said later.
+        if let Some(name) = own.and_then(|s| mesh.slots.get(s as usize)).filter(|name| own != slot && !name.is_empty())
+        {
+            writeln!(out, "usemtl {name}")?;
+        }
+        slot = own;
+        let [a, b, c] = face.map(|v| u64::from(v) + 1);
+        writeln!(out, "f {a} {b} {c}")?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::parse_obj;
+    use crate::report::Source;
+
+    #[test]
+    fn what_is_written_is_read_back() {
+        let text = "mtllib m.mtl\nv 0.1 -0 1e-300\nv 1e300 0.3333333333333333 2\nv 0 1 0\nf 1 2 3\nusemtl a b\nf 3 2 1\nusemtl c\nf 2 1 3\n";
+        let model = parse_obj(&Source::new("a.obj", text)).unwrap();
+        let mut bytes = Vec::new();
+        write_obj(&model.mesh, &model.libraries, &mut bytes).unwrap();
+        let again = parse_obj(&Source::new("b.obj", String::from_utf8(bytes).unwrap())).unwrap();
+        assert_eq!((again.mesh, again.libraries), (model.mesh, model.libraries));
+    }
+}

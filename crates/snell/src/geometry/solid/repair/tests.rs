@@ -1,0 +1,73 @@
+//! Repair of anything at all.
+
+use super::super::{check, structure};
+use super::*;
+use crate::geometry::Vec3;
+use proptest::prelude::*;
+
+fn once_and_for_all(mesh: &TriangleMesh) -> Result<TriangleMesh, TestCaseError> {
+    let (before, (mended, log)) = (check(mesh), repair(mesh, &Options::default()));
+    let after = check(&mended);
+    prop_assert!(!before.is_solid() || after.is_solid(), "{before:?} {log:?} {after:?}");
+    prop_assert!(after.broken.is_empty() && before.component_of.len() == mesh.faces.len());
+    prop_assert!(mended.face_slots.len() == mended.faces.len());
+    let (again, nothing) = repair(&mended, &Options::default());
+    prop_assert!(nothing.is_empty() && again == mended, "{log:?} {nothing:?}");
+    Ok(mended)
+}
+
+/// Faces between the points of a small grid, where much lies on lines, in planes and in one place.
+fn on_a_grid(faces: Vec<[u32; 3]>, places: Vec<[i8; 3]>) -> TriangleMesh {
+    let vertices = places.into_iter().map(|p| Vec3::from(p.map(f64::from))).collect();
+    TriangleMesh { vertices, face_slots: vec![0; faces.len()], faces, slots: vec![String::new()] }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(2000))]
+
+    /// Vertex 12 is not there.
+    #[test]
+    fn whatever_it_is_twice_is_once(
+        faces in prop::collection::vec(prop::array::uniform3(0u32..13), 1..40),
+        places in prop::collection::vec(prop::array::uniform3(-1i8..=1), 12),
+    ) {
+        once_and_for_all(&on_a_grid(faces, places))?;
+    }
+
+    /// A grid of cubes of which some are there, each with faces of its own; with faces taken away and turned.
+    #[test]
+    fn damaged_solids_are_mended(
+        cubes in prop::collection::vec(prop::array::uniform3(0i8..3), 1..6),
+        gone in prop::collection::vec(0usize..72, 0..2),
+        turned in prop::collection::vec(0usize..72, 0..2),
+    ) {
+        let mut cubes = cubes;
+        cubes.sort_unstable();
+        cubes.dedup();
+        let quads = [[0u32, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        let (mut faces, mut places) = (Vec::new(), Vec::new());
+        for at in &cubes {
+            let first = places.len() as u32;
+            places.extend((0..8).map(|i| [0, 1, 2].map(|axis| at[axis] + (i >> axis & 1))));
+            faces.extend(quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).map(|f| f.map(|v| v + first)));
+        }
+        let whole = on_a_grid(faces, places);
+        let report = structure(&whole);
+        prop_assert!(report.is_solid() && report.components.iter().all(|c| c.volume == 1.0), "{report:?}");
+        prop_assert_eq!(report.components.len(), cubes.len());
+        prop_assert_eq!(once_and_for_all(&whole)?.faces.len(), whole.faces.len());
+        let mut damaged = whole;
+        let count = damaged.faces.len();
+        for t in turned {
+            damaged.faces[t % count].swap(0, 1);
+        }
+        for g in gone {
+            damaged.faces.remove(g % damaged.faces.len());
+            damaged.face_slots.pop();
+        }
+        let mended = once_and_for_all(&damaged)?;
+        if cubes.len() == 1 {
+            prop_assert!(structure(&mended).is_solid());
+        }
+    }
+}
