@@ -82,10 +82,12 @@ fn scene(max_depth: u32, camera: Camera, size: u32) -> Scene {
         schema: None,
         ambient: Rgb::black(),
         eta_outside: 1.0,
+        background: Rgb::gray(0.0),
         render: Render {
             integrator: Integrator::Course2018,
             size: [size, size],
             max_depth,
+            min_throughput: snell::scene::MIN_THROUGHPUT,
             shadows: Shadows::Opaque,
             transfer: Transfer::Srgb,
             rounding: Rounding::Round,

@@ -8,7 +8,7 @@ use serde_json::json;
 use snell::film::transfer::Encoding;
 use snell::film::{BYTES_PER_PIXEL, Crop};
 use snell::render::{Options, RenderError, Rendered, render};
-use snell::scene::WarningCode;
+use snell::scene::{Integrator, WarningCode};
 use snell::world::World;
 use snell_formats::load::Loaded;
 use snell_formats::picture::{self, Format};
@@ -315,13 +315,26 @@ fn summary(
         eprintln!("  depth 0: mirrors and glass send no rays on");
     } else if lost.rays > 0 {
         eprintln!(
-            "  {}: depth {} ended {} branches; what lies behind them weighs {:.2} % of a pixel on average, \
+            "  {}: depth {}{} ended {} branches; what lies behind them weighs {:.2} % of a pixel on average, \
              {:.1} % in pixel {worst_x},{worst_y}",
             WarningCode::LostLight.code(),
             world.render.max_depth,
+            if world.render.integrator == Integrator::Whitted { " or too little light" } else { "" },
             short(lost.rays as f64),
             100.0 * lost.share(pixels),
             100.0 * lost.worst(),
+        );
+    }
+    let stray = &statistics.stray;
+    if let Some(pixel) = stray.first_pixel {
+        let width = u64::from(world.camera.size[0]);
+        eprintln!(
+            "  {}: {} times a ray met the inside of a solid that it had not entered, first in pixel {},{}: does a mesh cross \
+             itself? `snell check` shows where",
+            WarningCode::StrayExit.code(),
+            short(stray.count as f64),
+            pixel % width,
+            pixel / width,
         );
     }
 }

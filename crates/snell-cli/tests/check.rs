@@ -126,7 +126,10 @@ fn an_nff_file_is_drawn_changed_and_converted() {
                 f 1 0.5 0.5 0.8 0 10 0 0\ns 0 0 0 1\np 3\n-2 -2 -1\n2 -2 -1\n0 2 -1\n";
     fs::write(at.join("s.nff"), text).unwrap();
     let output = run(at, &["render", "s.nff", "-o", "a.npy"]);
-    assert!(stderr(&output).contains("W107 approximated"), "{}", stderr(&output));
+    assert!(!stderr(&output).contains("W107 approximated"), "{}", stderr(&output));
+    fs::write(at.join("hollow.nff"), text.replace("s 0 0 0 1", "s 0 0 0 -1")).unwrap();
+    let hollow = run(at, &["render", "hollow.nff", "-o", "h.npy"]);
+    assert!(stderr(&hollow).contains("W107 approximated"), "{}", stderr(&hollow));
     run(at, &["convert", "s.nff", "-o", "s.toml"]);
     run(at, &["render", "s.toml", "-o", "b.npy"]);
     run(at, &["diff", "a.npy", "b.npy"]);

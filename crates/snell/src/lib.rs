@@ -18,11 +18,13 @@
 //!     snell: 1,
 //!     schema: None,
 //!     ambient: Rgb::gray(0.2),
+//!     background: Rgb::gray(0.0),
 //!     eta_outside: 1.0,
 //!     render: Render {
 //!         integrator: Integrator::Lecture,
 //!         size: [32, 32],
 //!         max_depth: 6,
+//!         min_throughput: snell::scene::MIN_THROUGHPUT,
 //!         shadows: Shadows::Opaque,
 //!         transfer: Transfer::Linear,
 //!         rounding: Rounding::Round,

@@ -203,10 +203,12 @@ mod tests {
             schema: None,
             ambient: Rgb::gray(0.2),
             eta_outside: 1.0,
+            background: Rgb::gray(0.0),
             render: Render {
                 integrator: Integrator::Lecture,
                 size: [1, 1],
                 max_depth: 0,
+                min_throughput: crate::scene::MIN_THROUGHPUT,
                 shadows: Shadows::Off,
                 transfer: Transfer::Linear,
                 rounding: Rounding::Round,

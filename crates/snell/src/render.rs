@@ -134,7 +134,8 @@ pub fn trace_pixel(world: &World, x: u32, y: u32) -> Option<(Rgb, RayTree)> {
     let mut tracer = Tracer::<f64, _>::new(world, None, Recorder::default());
     let pixel = (x < width && y < height).then_some(Crop { x, y, width: 1, height: 1 })?;
     let radiance = tracer.trace(&pixel)?.first().copied()?;
-    Some((radiance, tracer.observer.tree))
+    let lost = tracer.lost.first().copied().unwrap_or_default();
+    Some((radiance, RayTree { lost, ..tracer.observer.tree }))
 }
 
 /// What one thread does.

@@ -394,10 +394,12 @@ impl Reader {
             schema: None,
             ambient: values.ambient,
             eta_outside: values.eta_outside.unwrap_or(1.0),
+            background: Rgb::gray(0.0),
             render: Render {
                 integrator: dialect.integrator(),
                 size: values.size.ok_or_else(|| missing("res"))?,
                 max_depth: values.depth,
+                min_throughput: snell::scene::MIN_THROUGHPUT,
                 shadows: Shadows::Opaque,
                 transfer: Transfer::Linear,
                 rounding: dialect.rounding(),

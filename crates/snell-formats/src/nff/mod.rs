@@ -4,11 +4,11 @@
 //! | NFF | scene |
 //! | --- | --- |
 //! | `v` | the camera; `hither` is where its image plane stands and rays start; `angle` counts between the middles of the first and the last row, and column, as in a scene |
-//! | `b` | nothing yet, with a warning |
+//! | `b` | the background |
 //! | `l` | a light; without a colour 1/√n for each of n, as in Haines' own writers |
 //! | `f` colour Kd Ks shine T index | `kd` = colour · Kd, `ks` = `kr` = Ks, `spow` = shine, `ko` = 1 − T, `eta` = index, or 1 if that is 0; `ka` = 0 |
 //! | `s` | a sphere |
-//! | `p` | faces of a mesh, one for each fill |
+//! | `p` | faces of a mesh, one for each fill; with T > 0 it refracts if it is closed, else it is opaque |
 //! | `pp` | the same in a smooth mesh of their own; the normals themselves are not kept, with a warning |
 //! | `c` | an open cone of 64 sides in the smooth mesh, with a warning |
 
@@ -30,11 +30,11 @@ use snell::scene::{
 use std::iter::Peekable;
 use std::ops::Range;
 
-/// The model of light of NFF scenes. To become `whitted`: the format was made for Whitted's model.
-const INTEGRATOR: Integrator = Integrator::Lecture;
+/// The model of light of NFF scenes: the format was made for it.
+const INTEGRATOR: Integrator = Integrator::Whitted;
 
-/// As deep as Haines' own pictures, and one more.
-const MAX_DEPTH: u32 = 6;
+/// Glass in glass needs many bounces; branches that carry little end before.
+const MAX_DEPTH: u32 = 32;
 
 /// No picture is anywhere near this wide; it keeps products of sizes within 64 bits.
 const MAX_SIDE: f64 = (1u32 << 24) as f64;
@@ -73,6 +73,7 @@ pub fn parse(source: &Source) -> Result<Nff, Report> {
         words: lines.peekable(),
         last: 0..0,
         view: None,
+        background: Rgb::gray(0.0),
         lights: Vec::new(),
         shapes: Shapes::default(),
         spheres: Vec::new(),
@@ -98,6 +99,7 @@ struct Reader<'a, W: Iterator<Item = Word<'a>>> {
     /// The word that was read last.
     last: Range<usize>,
     view: Option<View>,
+    background: Rgb,
     lights: Vec<([f64; 3], Option<Rgb>)>,
     shapes: Shapes,
     spheres: Vec<Sphere>,
@@ -116,9 +118,8 @@ impl<'a, W: Iterator<Item = Word<'a>>> Reader<'a, W> {
                 Some(vec![Step::from("camera")])
             }
             "b" => {
-                self.numbers::<3>("b red green blue")?;
-                self.warn(keyword, "the background is not drawn: rays that leave the scene are black");
-                None
+                self.background = self.numbers("b red green blue")?.into();
+                Some(vec![Step::from("background")])
             }
             "l" => {
                 let position = self.numbers("l x y z, and red green blue if they are not all alike")?;
@@ -327,10 +328,12 @@ impl<'a, W: Iterator<Item = Word<'a>>> Reader<'a, W> {
             schema: None,
             ambient: Rgb::gray(0.0),
             eta_outside: 1.0,
+            background: self.background,
             render: Render {
                 integrator: INTEGRATOR,
                 size,
                 max_depth: MAX_DEPTH,
+                min_throughput: snell::scene::MIN_THROUGHPUT,
                 shadows: Shadows::Opaque,
                 transfer: Transfer::default(),
                 rounding: Rounding::default(),

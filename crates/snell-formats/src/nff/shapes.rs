@@ -3,7 +3,7 @@
 use crate::model::polygon::Polygons;
 use indexmap::IndexMap;
 use snell::geometry::Vec3;
-use snell::scene::{Material, Mesh, Step};
+use snell::scene::{Material, Mesh, OpenMesh, Step};
 use std::collections::HashMap;
 use std::ops::Range;
 
@@ -61,7 +61,10 @@ impl Shapes {
             if !faces.is_empty() {
                 let vertices = vertices.into_iter().map(|v| [v.x, v.y, v.z]).collect();
                 let material = self.current.clone();
-                self.meshes.push((Mesh { vertices, faces, material, smooth_angle, ..Mesh::default() }, range));
+                // The format says nothing of solids: what is none cannot refract.
+                let is_transparent = |name: &String| self.materials.get(name).is_some_and(Material::is_transparent);
+                let open = material.as_ref().filter(|name| is_transparent(name)).map(|_| OpenMesh::Opaque);
+                self.meshes.push((Mesh { vertices, faces, material, smooth_angle, open, ..Mesh::default() }, range));
             }
         }
     }

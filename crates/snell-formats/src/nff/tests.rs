@@ -31,7 +31,8 @@ fn every_entity_finds_its_place() {
     assert_eq!((scene.meshes[0].smooth_angle, scene.meshes[1].smooth_angle), (0.0, 60.0));
     assert_eq!(scene.meshes[2].vertices.len(), 65, "the tip is one vertex");
     let said: Vec<usize> = nff.warnings.iter().map(|w| w.place.clone().unwrap().1.start).collect();
-    assert_eq!(nff.warnings.len(), 3, "background, normals, cone: {said:?}");
+    assert_eq!(nff.warnings.len(), 2, "normals, cone: {said:?}");
+    assert_eq!(scene.background, Rgb::new(0.1, 0.2, 0.3));
     let place = nff.place(&[Step::from("sphere"), Step::from(0), Step::from("radius")]).unwrap();
     assert_eq!(
         &format!("{VIEW}b .1 .2 .3 # sky\nl 1 2 3\nl 4 5 6 .5 .6 .7\nf 1 .5 .25 .5 .4 30 .75 1.5\n").len(),

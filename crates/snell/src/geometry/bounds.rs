@@ -32,6 +32,15 @@ impl Bounds {
         }
     }
 
+    /// Do two boxes have a point in common?
+    pub fn meets(&self, other: &Self) -> bool {
+        let (a, b) = (self, other);
+        let shared = |axis: usize| {
+            a.min.component(axis) <= b.max.component(axis) && b.min.component(axis) <= a.max.component(axis)
+        };
+        shared(0) && shared(1) && shared(2)
+    }
+
     /// The eight corners.
     pub fn corners(&self) -> [Vec3; 8] {
         let (a, b) = (self.min, self.max);

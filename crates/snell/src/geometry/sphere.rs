@@ -54,9 +54,51 @@ pub fn intersect<L: Lanes>(origin: Vec3<L>, dir: Vec3<L>, center: Vec3<L>, radiu
     (v - disc.sqrt(), disc.gt(L::splat(0.0)))
 }
 
+/// Distance to where a ray crosses a sphere for the first time beyond `t_min`, from outside or from inside, and whether it
+/// does. A ray that `leaves` the sphere, because it starts on it, crosses it again only on the far side, if it goes inward.
+///
+/// `|T − v·d|²` for the squared distance from the centre, as above: what the course needs of the textbook's form is not needed
+/// here. `dir` of unit length.
+#[inline(always)]
+pub fn crossing<L: Lanes>(
+    origin: Vec3<L>,
+    dir: Vec3<L>,
+    center: Vec3<L>,
+    radius: L,
+    t_min: L,
+    leaves: L::Mask,
+) -> (L, L::Mask) {
+    let zero = L::splat(0.0);
+    let to_center = center - origin;
+    let v = to_center.dot(dir);
+    let off = to_center - dir * v;
+    let disc = radius * radius - off.dot(off);
+    let half = disc.sqrt();
+    let (near, far) = (v - half, v + half);
+    let from_within = leaves | near.le(t_min);
+    let t = L::select(from_within, far, near);
+    (t, disc.gt(zero) & t.gt(t_min) & (!leaves | v.gt(zero)))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn both_sides_are_crossed() {
+        let (center, x) = (Vec3::default(), Vec3::new(1.0, 0.0, 0.0));
+        let at = |x: f64| Vec3::new(x, 0.0, 0.0);
+        let hit = |from: f64, dir: Vec3, t_min: f64, leaves: bool| {
+            let (t, meets) = crossing::<f64>(at(from), dir, center, 2.0, t_min, leaves);
+            meets.then_some(t)
+        };
+        assert_eq!(hit(-5.0, x, 0.0, false), Some(3.0), "into it");
+        assert_eq!(hit(0.5, x, 0.0, false), Some(1.5), "out of it");
+        assert_eq!(hit(-5.0, x, 3.0, false), Some(7.0), "out of it, after it has been entered");
+        assert_eq!(hit(5.0, x, 0.0, false), None, "behind");
+        assert_eq!(hit(-2.0, x, 0.0, true), Some(4.0), "through it");
+        assert_eq!(hit(2.0, x, 0.0, true), None, "away from it");
+    }
 
     fn hit(origin: [f64; 3], dir: [f64; 3], center: [f64; 3], radius: f64) -> Option<f64> {
         let (t, meets) = intersect::<f64>(origin.into(), Vec3::from(dir).unit(), center.into(), radius);

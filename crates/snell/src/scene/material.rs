@@ -1,7 +1,8 @@
-//! Materials, by the lecture's coefficients.
+//! Materials: the lecture's coefficients, and what the physical model adds to them.
 
 use super::one;
 use crate::film::Rgb;
+use crate::optics::absorption;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -24,11 +25,63 @@ pub struct Material {
     /// Index of refraction.
     #[serde(default = "one")]
     pub eta: f64,
+    /// `whitted`: light that the surface sends out by itself.
+    #[serde(skip_serializing_if = "is_default")]
+    pub emission: Rgb,
+    /// `whitted`: the colour of white light after `attenuation_distance` inside.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub attenuation_color: Option<Rgb>,
+    /// `whitted`: at which thickness `attenuation_color` is seen, in scene units.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub attenuation_distance: Option<f64>,
+    /// `whitted`: absorption per scene unit, instead of a colour at a distance.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sigma_a: Option<Rgb>,
+    /// `whitted`: where solids overlap, the one of the highest priority is there; among equals the one entered last.
+    #[serde(skip_serializing_if = "is_default")]
+    pub priority: i32,
+    /// `whitted`: what goes through the surface takes its diffuse colour `kd`.
+    #[serde(skip_serializing_if = "is_default")]
+    pub dyed: bool,
+}
+
+fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
 }
 
 impl Default for Material {
     fn default() -> Self {
         let none = Rgb::gray(0.0);
-        Self { ka: none, kd: none, ks: none, kr: none, ko: Rgb::gray(1.0), spow: 16.0, eta: 1.0 }
+        Self {
+            ka: none,
+            kd: none,
+            ks: none,
+            kr: none,
+            ko: Rgb::gray(1.0),
+            spow: 16.0,
+            eta: 1.0,
+            emission: none,
+            attenuation_color: None,
+            attenuation_distance: None,
+            sigma_a: None,
+            priority: 0,
+            dyed: false,
+        }
+    }
+}
+
+impl Material {
+    /// Does light go through it? `Σko < 3`, as in the lecture.
+    pub fn is_transparent(&self) -> bool {
+        self.ko.to_array().iter().sum::<f64>() < 3.0
+    }
+
+    /// Absorption per scene unit, from whichever of the two forms is given.
+    pub fn absorption(&self) -> Rgb {
+        match (self.sigma_a, self.attenuation_color, self.attenuation_distance) {
+            (Some(sigma_a), ..) => sigma_a,
+            (None, Some(color), Some(distance)) => absorption::sigma_a(color, distance),
+            (None, ..) => Rgb::gray(0.0),
+        }
     }
 }

@@ -15,8 +15,8 @@ mod warning;
 pub use camera::Camera;
 pub use light::Light;
 pub use material::Material;
-pub use render::{Integrator, Render, Shadows};
-pub use shape::{Mesh, Sphere, Transform};
+pub use render::{Integrator, MIN_THROUGHPUT, Render, Shadows};
+pub use shape::{Mesh, OpenMesh, Sphere, Transform};
 pub use validate::{LARGEST_NUMBER, MAX_DEPTH, Problem, Step, validate};
 pub use warning::{Warning, WarningCode};
 
@@ -42,6 +42,9 @@ pub struct Scene {
     /// Light that comes from everywhere alike.
     #[serde(default)]
     pub ambient: Rgb,
+    /// `whitted`: light that comes from where nothing is hit.
+    #[serde(default, skip_serializing_if = "is_black")]
+    pub background: Rgb,
     /// Index of refraction of the space between the objects.
     #[serde(default = "one")]
     pub eta_outside: f64,
@@ -68,6 +71,10 @@ pub struct Scene {
     /// Triangle meshes.
     #[serde(default, rename = "mesh", skip_serializing_if = "Vec::is_empty", deserialize_with = "table::many")]
     pub meshes: Vec<Mesh>,
+}
+
+fn is_black(color: &Rgb) -> bool {
+    *color == Rgb::gray(0.0)
 }
 
 pub(crate) fn one() -> f64 {

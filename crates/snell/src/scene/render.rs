@@ -13,7 +13,11 @@ pub struct Render {
     /// Width and height in pixels.
     pub size: [u32; 2],
     /// How many bounces may follow the camera ray.
+    #[serde(default = "default_depth")]
     pub max_depth: u32,
+    /// `whitted`: branches that carry less than this are not followed, and counted as lost light.
+    #[serde(default = "default_throughput", skip_serializing_if = "is_default_throughput")]
+    pub min_throughput: f64,
     /// What stands between a surface and a light.
     #[serde(default)]
     pub shadows: Shadows,
@@ -35,6 +39,8 @@ pub enum Integrator {
     Course2018,
     /// The course of 2019 and 2020: mirrors, and glass spheres of weight `1 − kr`.
     Course2020,
+    /// Real optics: Fresnel, total reflection, the inside of solids, absorption.
+    Whitted,
 }
 
 /// What stands between a surface and a light.
@@ -46,4 +52,22 @@ pub enum Shadows {
     /// Anything at all blocks a light, transparent or not.
     #[default]
     Opaque,
+    /// `whitted`: light goes straight through transparent things, and what they reflect and absorb is lost.
+    Tinted,
+}
+
+/// The default of [`Render::min_throughput`].
+pub const MIN_THROUGHPUT: f64 = 1.0 / 4096.0;
+
+fn default_depth() -> u32 {
+    32
+}
+
+fn default_throughput() -> f64 {
+    MIN_THROUGHPUT
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "the signature that serde asks for")]
+fn is_default_throughput(value: &f64) -> bool {
+    *value == MIN_THROUGHPUT
 }

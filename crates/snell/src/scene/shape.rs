@@ -46,6 +46,9 @@ pub struct Mesh {
     /// Normals are smoothed over edges up to this angle in degrees; 0 is flat.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub smooth_angle: f64,
+    /// `whitted`: what to do with a transparent mesh that is not closed; left out: it is refused.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub open: Option<OpenMesh>,
     /// Steps that put the model in its place, one after the other.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub transform: Vec<Transform>,
@@ -58,6 +61,16 @@ pub struct Mesh {
     #[serde(skip)]
     #[schemars(skip)]
     pub geometry: Option<Arc<TriangleMesh>>,
+}
+
+/// What to do with a transparent mesh that has no inside.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum OpenMesh {
+    /// Its holes are closed, as `snell check --repair` does.
+    Fill,
+    /// Nothing goes through it.
+    Opaque,
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "the signature that serde asks for")]

@@ -1,6 +1,6 @@
 //! What can be wrong with a scene, and where.
 
-use super::{Scene, Transform, Warning, WarningCode};
+use super::{Integrator, Material, Scene, Shadows, Transform, Warning, WarningCode};
 use crate::film::Rgb;
 use crate::geometry::Vec3;
 use std::fmt;
@@ -122,6 +122,7 @@ pub fn validate(scene: &Scene) -> Result<Vec<Warning>, Vec<Problem>> {
     materials(scene, &mut found);
     spheres(scene, &mut found);
     meshes(scene, &mut found);
+    only_whitted(scene, &mut found);
     if found.problems.is_empty() { Ok(found.warnings) } else { Err(found.problems) }
 }
 
@@ -131,6 +132,8 @@ fn settings(scene: &Scene, found: &mut Findings) {
         found.problem(place!["snell"], message, "write `snell = 1`, or use a newer Snell");
     }
     found.color(&place!["ambient"], scene.ambient);
+    found.color(&place!["background"], scene.background);
+    found.not_negative(place!["render", "min_throughput"], scene.render.min_throughput, "a throughput");
     let help = "1.0 is empty space, 1.33 water";
     found.positive(place!["eta_outside"], scene.eta_outside, "an index of refraction", help);
     let [width, height] = scene.render.size;
@@ -217,7 +220,66 @@ fn materials(scene: &Scene, found: &mut Findings) {
             found.warning(WarningCode::OpacityAboveOne, at("ko"), message);
         }
         found.not_negative(at("spow"), m.spow, "an exponent");
+        found.color(&at("emission"), m.emission);
+        absorption(found, &at, m);
         found.positive(at("eta"), m.eta, "an index of refraction", "glass is about 1.5, water 1.33");
+    }
+}
+
+fn absorption(found: &mut Findings, at: &impl Fn(&str) -> Vec<Step>, m: &Material) {
+    if let Some(distance) = m.attenuation_distance {
+        found.positive(at("attenuation_distance"), distance, "a thickness", "");
+    }
+    let colors = [("attenuation_color", m.attenuation_color), ("sigma_a", m.sigma_a)];
+    for (key, color) in colors.into_iter().filter_map(|(key, color)| Some((key, color?))) {
+        found.color(&at(key), color);
+        for value in color.to_array() {
+            found.not_negative(at(key), value, if key == "sigma_a" { "an absorption" } else { "a colour" });
+            if key == "attenuation_color" && value > 1.0 {
+                found.problem(at(key), format!("glass does not make light: read {value}, expected 0 to 1"), "");
+            }
+        }
+    }
+    if m.sigma_a.is_some() && m.attenuation_color.is_some() {
+        let message = "absorption is given twice: by `sigma_a`, and by a colour at a distance";
+        found.problem(at("sigma_a"), message, "remove one of them");
+    }
+    if m.attenuation_color.is_some() != m.attenuation_distance.is_some() {
+        let key = if m.attenuation_color.is_some() { "attenuation_color" } else { "attenuation_distance" };
+        let message =
+            "`attenuation_color` is the colour of white light after `attenuation_distance`: one says nothing alone";
+        found.problem(
+            at(key),
+            message,
+            "give both, like attenuation_color = [0.9, 1, 0.95] and attenuation_distance = 10",
+        );
+    }
+}
+
+/// What the lecture's models would silently leave out.
+fn only_whitted(scene: &Scene, found: &mut Findings) {
+    if scene.render.integrator == Integrator::Whitted {
+        return;
+    }
+    let mut unused = |place: Vec<Step>, used: bool| {
+        if used {
+            let message = "only the integrator `whitted` has this; here it changes nothing".to_owned();
+            found.warning(WarningCode::NotInThisModel, place, message);
+        }
+    };
+    unused(place!["background"], scene.background != Rgb::gray(0.0));
+    unused(place!["render", "min_throughput"], scene.render.min_throughput != super::MIN_THROUGHPUT);
+    for (name, m) in &scene.materials {
+        let at = |key: &str| place!["material", name.as_str(), key];
+        unused(at("emission"), m.emission != Rgb::gray(0.0));
+        unused(at("attenuation_color"), m.attenuation_color.is_some());
+        unused(at("sigma_a"), m.sigma_a.is_some());
+        unused(at("priority"), m.priority != 0);
+        unused(at("dyed"), m.dyed);
+    }
+    if scene.render.shadows == Shadows::Tinted {
+        let message = "shadows `tinted` need the integrator `whitted`";
+        found.problem(place!["render", "shadows"], message, "choose `opaque` or `off`, or integrator = \"whitted\"");
     }
 }
 

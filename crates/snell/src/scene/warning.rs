@@ -46,6 +46,10 @@ codes! {
     DegenerateFaces = "W004" "degenerate-faces",
     /// A vertex shared by too many faces to be smoothed.
     NotSmoothed = "W005" "not-smoothed",
+    /// Something that the chosen model of light does not have.
+    NotInThisModel = "W006" "not-in-this-model",
+    /// A ray left a solid that it had not entered.
+    StrayExit = "W007" "stray-exit",
     /// A line that starts with an unknown word.
     UnknownKeyword = "W101" "unknown-keyword",
     /// The same setting given twice; the last one counts.

@@ -1,11 +1,13 @@
 //! The first generation: the camera rays of a tile. They are made where they are needed, and never stored.
 
 use super::lecture::T_MIN;
+use super::media::{Media, OUTSIDE};
 use super::queue::{Generation, Load, Weight};
 use crate::film::{Crop, Rgb};
 use crate::geometry::{Sphere, Vec3, sphere};
 use crate::lanes::{Columns, Lanes};
-use crate::world::CameraFrame;
+use crate::scene::Integrator;
+use crate::world::{CameraFrame, World};
 
 /// One ray for each pixel of a tile, row by row. They carry everything and come from nowhere.
 #[derive(Clone, Debug)]
@@ -13,6 +15,10 @@ pub(crate) struct CameraRays<'a> {
     camera: &'a CameraFrame,
     /// For each pixel its place on the image plane: across and up.
     places: Columns<2>,
+    /// For each pixel the solids in which its ray starts.
+    media: Columns<1>,
+    /// No hit nearer than this counts.
+    t_min: f64,
     cone: Cone,
 }
 
@@ -29,12 +35,30 @@ struct Cone {
 }
 
 impl<'a> CameraRays<'a> {
-    pub fn new(camera: &'a CameraFrame) -> Self {
-        Self { camera, places: Columns::default(), cone: Cone::default() }
+    pub fn new(world: &'a World) -> Self {
+        let t_min = if world.render.integrator == Integrator::Whitted { 0.0 } else { T_MIN };
+        let (places, media) = (Columns::default(), Columns::default());
+        Self { camera: &world.camera, places, media, t_min, cone: Cone::default() }
     }
 
     /// Takes the pixels of another tile.
-    pub fn aim(&mut self, tile: &Crop) {
+    pub fn aim(&mut self, tile: &Crop, media: &mut Media<'_>) {
+        self.place(tile);
+        self.media.clear();
+        self.media.resize(self.places.len());
+        let [sets] = self.media.columns_mut();
+        if media.camera_is_outside() {
+            sets.fill(f64::from(OUTSIDE));
+            return;
+        }
+        for (row, set) in sets.iter_mut().enumerate() {
+            let [across, up] = self.places.group::<f64, 2>(0, row);
+            let (origin, dir) = self.camera.rays(across, up);
+            *set = f64::from(media.at_start(origin, dir));
+        }
+    }
+
+    fn place(&mut self, tile: &Crop) {
         self.places.clear();
         self.places.resize(tile.width as usize * tile.height as usize);
         let [across, up] = self.places.columns_mut();
@@ -102,10 +126,11 @@ impl Generation for CameraRays<'_> {
         let white = Rgb::gray(1.0).splat();
         Load {
             weight: Weight { attenuation: white, factor: white },
-            t_min: L::splat(T_MIN),
+            t_min: L::splat(self.t_min),
             source: L::splat(-1.0),
             parent: L::splat(0.0),
             pixel: L::ramp(start),
+            medium: self.media.lanes(0, start),
         }
     }
 
@@ -125,6 +150,14 @@ mod tests {
     use crate::scene::Camera;
     use proptest::prelude::*;
 
+    /// The rays of a tile, of a camera without a world.
+    fn through<'a>(camera: &'a CameraFrame, tile: &Crop) -> CameraRays<'a> {
+        let (places, media, cone) = (Columns::default(), Columns::default(), Cone::default());
+        let mut rays = CameraRays { camera, places, media, t_min: 0.0, cone };
+        rays.place(tile);
+        rays
+    }
+
     proptest! {
         /// No ray of a tile meets a sphere that its cone leaves out.
         #[test]
@@ -141,8 +174,7 @@ mod tests {
             let camera = Camera { eye: moved(eye), look_at: [far; 3], up: [0.1, 1.0, 0.2], bounds, near, far: None };
             let frame = CameraFrame::new(&camera, [64, 64]);
             prop_assume!(frame.has_image_plane());
-            let mut rays = CameraRays::new(&frame);
-            rays.aim(&Crop { x: corner[0], y: corner[1], width: 4, height: 3 });
+            let rays = through(&frame, &Crop { x: corner[0], y: corner[1], width: 4, height: 3 });
             let sphere = Sphere { center: moved(center).into(), radius };
             for row in 0..rays.len() {
                 let (origin, dir) = rays.ways::<f64>(row);
@@ -163,8 +195,7 @@ mod tests {
             far: None,
         };
         let frame = CameraFrame::new(&camera, [64, 64]);
-        let mut rays = CameraRays::new(&frame);
-        rays.aim(&Crop { x: 0, y: 0, width: 16, height: 16 });
+        let rays = through(&frame, &Crop { x: 0, y: 0, width: 16, height: 16 });
         assert!(!rays.may_meet(&Sphere { center: Vec3::default(), radius: 2.0 }));
         assert!(rays.may_meet(&Sphere { center: Vec3::new(-8.0, 8.0, 0.0), radius: 0.1 }));
         assert!(!rays.may_meet(&Sphere { center: Vec3::new(8.0, -8.0, 20.0), radius: 0.1 }), "behind the eye");

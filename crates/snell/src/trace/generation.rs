@@ -2,13 +2,17 @@
 
 use super::camera::CameraRays;
 use super::hits::Hits;
-use super::lecture;
+use super::interfaces::Ways;
+use super::lecture::{self, Blend};
+use super::media::Media;
 use super::queue::{Generation, RayKind, RayQueue};
 use super::shading::{self, ShadowRays};
-use super::statistics::Statistics;
+use super::statistics::{Statistics, StrayExits};
+use super::whitted;
 use crate::film::{Crop, Rgb};
 use crate::geometry::bvh::Packet;
 use crate::lanes::Lanes;
+use crate::scene::Integrator;
 use crate::world::World;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -42,6 +46,8 @@ pub(crate) struct Tracer<'a, L, O> {
     /// Waits to be used again for the next tile.
     camera_rays: Option<CameraRays<'a>>,
     packet: Box<Packet>,
+    media: Media<'a>,
+    ways: Ways,
     hits: Hits,
     shadow: ShadowRays,
     refracted: RayQueue,
@@ -49,10 +55,11 @@ pub(crate) struct Tracer<'a, L, O> {
     waiting: Vec<(u32, RayQueue)>,
     /// Queues that wait to be used again.
     spare: Vec<RayQueue>,
+    tile: Crop,
     /// Radiance and number of rays of each pixel of the tile, and the throughput it lost.
     radiance: Vec<Rgb>,
     rays_of: Vec<u32>,
-    lost: Vec<f64>,
+    pub lost: Vec<Rgb>,
     lanes: std::marker::PhantomData<L>,
 }
 
@@ -65,11 +72,14 @@ impl<'a, L: Lanes, O: Observer> Tracer<'a, L, O> {
             statistics: Statistics::default(),
             camera_rays: None,
             packet: Box::default(),
+            media: Media::new(world),
+            ways: Ways::default(),
             hits: Hits::default(),
             shadow: ShadowRays::default(),
             refracted: RayQueue::default(),
             waiting: Vec::new(),
             spare: Vec::new(),
+            tile: Crop { x: 0, y: 0, width: 1, height: 1 },
             radiance: Vec::new(),
             rays_of: Vec::new(),
             lost: Vec::new(),
@@ -80,15 +90,16 @@ impl<'a, L: Lanes, O: Observer> Tracer<'a, L, O> {
     /// Traces a tile of the picture, and returns the radiance of its pixels, row by row; `None` if it was cancelled on the way.
     #[inline(always)]
     pub fn trace(&mut self, tile: &Crop) -> Option<&[Rgb]> {
-        let mut camera_rays = self.camera_rays.take().unwrap_or_else(|| CameraRays::new(&self.world.camera));
-        camera_rays.aim(tile);
+        let mut camera_rays = self.camera_rays.take().unwrap_or_else(|| CameraRays::new(self.world));
+        self.tile = *tile;
+        camera_rays.aim(tile, &mut self.media);
         let count = camera_rays.len();
         self.radiance.clear();
         self.radiance.resize(count, Rgb::black());
         self.rays_of.clear();
         self.rays_of.resize(count, 1);
         self.lost.clear();
-        self.lost.resize(count, 0.0);
+        self.lost.resize(count, Rgb::black());
 
         let children = self.generation(0, &camera_rays);
         self.camera_rays = Some(camera_rays);
@@ -105,7 +116,7 @@ impl<'a, L: Lanes, O: Observer> Tracer<'a, L, O> {
             self.spare.push(queue);
             self.enqueue(depth + 1, children);
         }
-        self.count_lost_light(tile);
+        self.count_lost_light();
         Some(&self.radiance)
     }
 
@@ -148,18 +159,32 @@ impl<'a, L: Lanes, O: Observer> Tracer<'a, L, O> {
         self.statistics.rays.add(rays.counts());
         self.statistics.count_generation(depth, rays.len() as u64);
 
-        self.hits.find::<L>(self.world, rays, &mut self.packet);
-        let shadow_rays = shading::local_colors::<L>(self.world, &mut self.hits, &mut self.shadow, &mut self.packet);
+        let blend = Blend::of(self.world.render.integrator);
+        if blend.is_some() {
+            self.hits.find::<L>(self.world, rays, &mut self.packet);
+        } else {
+            let mut stray = StrayExits::default();
+            self.hits.find_interfaces::<L>(rays, &mut self.media, &mut self.ways, &mut self.packet, &mut stray);
+            stray.first_pixel = stray.first_pixel.map(|pixel| self.number_of(pixel as usize));
+            self.statistics.stray.merge(&stray);
+        }
+        let shadow_rays =
+            shading::local_colors::<L>(&mut self.media, &mut self.hits, &mut self.shadow, &mut self.packet);
         self.statistics.rays.shadow += shadow_rays as u64;
         let mut children = self.empty_queue();
         self.refracted.clear();
         for start in (0..self.hits.len()).step_by(L::WIDTH) {
             let batch = self.hits.batch::<L>(self.world, start);
-            let (sends_mirror, mirror) = lecture::mirror_ray(&batch);
-            let (sends_exit, exit) = lecture::exit_ray(&batch);
-            let contribution = lecture::contribution(&batch);
-            children.push(RayKind::Mirror, sends_mirror, &mirror);
-            self.refracted.push(RayKind::Refracted, sends_exit, &exit);
+            let (contribution, mirror, refracted) = match blend {
+                Some(blend) => (
+                    lecture::contribution(blend, &batch),
+                    lecture::mirror_ray(blend, &batch),
+                    lecture::exit_ray(blend, &batch),
+                ),
+                None => whitted::answer(&batch, &self.media),
+            };
+            children.push(RayKind::Mirror, mirror.0, &mirror.1);
+            self.refracted.push(RayKind::Refracted, refracted.0, &refracted.1);
             self.hits.set_contribution(start, contribution);
         }
         children.append(&self.refracted);
@@ -172,20 +197,24 @@ impl<'a, L: Lanes, O: Observer> Tracer<'a, L, O> {
         children
     }
 
-    /// Ends what is beyond the depth limit or the limit of rays per pixel, and counts it as lost.
+    /// Ends what is beyond the depth limit or the limit of rays per pixel, or carries too little, and counts it as lost.
     fn limit(&mut self, depth: u32, children: &mut RayQueue) {
-        let too_deep = depth >= self.world.render.max_depth;
+        let render = &self.world.render;
+        let too_deep = depth >= render.max_depth;
+        let least = if render.integrator == Integrator::Whitted { render.min_throughput } else { 0.0 };
         let most = self.rays_of.iter().copied().max().unwrap_or(0) as usize;
-        if !too_deep && most + children.len() <= RAYS_PER_PIXEL as usize {
+        if !too_deep && least == 0.0 && most + children.len() <= RAYS_PER_PIXEL as usize {
             return;
         }
         let mut kept = self.empty_queue();
         let mut planned = if too_deep { Vec::new() } else { self.rays_of.clone() };
         for row in 0..children.len() {
             let pixel = children.pixel(row);
-            if too_deep || planned[pixel] >= RAYS_PER_PIXEL {
-                let Rgb { r, g, b } = children.loads::<f64>(row).weight.throughput();
-                self.lost[pixel] += Rgb::new(r.abs(), g.abs(), b.abs()).mean();
+            let Rgb { r, g, b } = children.loads::<f64>(row).weight.throughput();
+            let throughput = Rgb::new(r.abs(), g.abs(), b.abs());
+            let too_little = throughput.r.max(throughput.g).max(throughput.b) < least;
+            if too_deep || too_little || planned[pixel] >= RAYS_PER_PIXEL {
+                self.lost[pixel] = self.lost[pixel] + throughput;
                 self.statistics.lost.rays += 1;
             } else {
                 planned[pixel] += 1;
@@ -196,13 +225,16 @@ impl<'a, L: Lanes, O: Observer> Tracer<'a, L, O> {
         self.spare.push(kept);
     }
 
-    fn count_lost_light(&mut self, tile: &Crop) {
-        let (width, columns) = (u64::from(self.world.camera.size[0]), tile.width as usize);
-        for (i, &lost) in self.lost.iter().enumerate() {
-            if lost > 0.0 {
-                let (x, y) = (u64::from(tile.x) + (i % columns) as u64, u64::from(tile.y) + (i / columns) as u64);
-                self.statistics.lost.add(y * width + x, lost);
-            }
+    fn count_lost_light(&mut self) {
+        for (pixel, lost) in self.lost.iter().map(|lost| lost.mean()).enumerate().filter(|(_, lost)| *lost > 0.0) {
+            self.statistics.lost.add(self.number_of(pixel), lost);
         }
+    }
+
+    /// The number of a pixel of the tile in the whole picture, row by row.
+    fn number_of(&self, pixel: usize) -> u64 {
+        let (tile, columns) = (&self.tile, self.tile.width as usize);
+        let (x, y) = (u64::from(tile.x) + (pixel % columns) as u64, u64::from(tile.y) + (pixel / columns) as u64);
+        y * u64::from(self.world.camera.size[0]) + x
     }
 }

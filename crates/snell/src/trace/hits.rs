@@ -5,7 +5,7 @@ use crate::film::Rgb;
 use crate::geometry::Vec3;
 use crate::geometry::bvh::{Few, Nearest, PACKET, Packet};
 use crate::lanes::{Columns, Lanes, MAX_WIDTH, Mask, index};
-use crate::scene::Material;
+use crate::scene::{Integrator, Material};
 use crate::world::World;
 
 /// Columns of the hits as they are found.
@@ -16,6 +16,12 @@ const T: usize = 3;
 const POINT: usize = 4;
 const WO: usize = 7;
 const ATTENUATION: usize = 10;
+const BEFORE: usize = 16;
+const AFTER: usize = 17;
+const OUTER: usize = 18;
+
+/// In the column of primitives: nothing is there, only the background.
+pub(super) const SKY: f64 = -1.0;
 
 /// Columns of what is worked out about them.
 const NORMAL: usize = 0;
@@ -26,8 +32,10 @@ const CONTRIBUTION: usize = 7;
 /// The hits of a generation, compacted, in the order of their rays.
 #[derive(Debug, Default)]
 pub(crate) struct Hits {
-    found: Columns<16>,
+    found: Columns<19>,
     surface: Columns<10>,
+    /// Geometric normals, where they are not those of the surface.
+    geometric: Columns<3>,
     /// Spheres that the rays may meet.
     seen: Few,
 }
@@ -36,6 +44,11 @@ impl Hits {
     #[inline(always)]
     pub fn len(&self) -> usize {
         self.found.len()
+    }
+
+    #[inline(always)]
+    pub fn clear(&mut self) {
+        self.found.clear();
     }
 
     /// Finds the closest hits of all rays, and what surface is there.
@@ -51,9 +64,9 @@ impl Hits {
                 let ((origin, dir), load) = (rays.ways::<L>(start), rays.loads::<L>(start));
                 let active = L::Mask::first(rays.len() - start);
                 let none = Nearest::none(active, load.t_min, L::splat(f64::INFINITY), load.source);
-                let Nearest { hit, t, primitive, .. } = none.among(&seen, origin, dir);
+                let Nearest { hit, t, primitive, .. } = none.among(false, &seen, origin, dir);
                 if hit.any() {
-                    self.push(hit, L::ramp(start), origin, dir, t, primitive, &load);
+                    self.push(hit, start, (origin, dir), t, primitive, &load, &Face::opaque());
                 }
             }
             self.seen = seen;
@@ -64,10 +77,9 @@ impl Hits {
                 for start in (0..PACKET).step_by(L::WIDTH) {
                     let mask = L::Mask::from_bits((hit >> start) as u32);
                     if mask.any() {
-                        let (origin, dir) = packet.ways(start);
                         let (t, primitive) = (L::load(&packet.t[start..]), L::load(&packet.primitive[start..]));
-                        let row = first + start;
-                        self.push(mask, L::ramp(row), origin, dir, t, primitive, &rays.loads(row));
+                        let (way, load) = (packet.ways(start), rays.loads(first + start));
+                        self.push(mask, first + start, way, t, primitive, &load, &Face::opaque());
                     }
                 }
             }
@@ -75,29 +87,57 @@ impl Hits {
         self.look_up_surfaces::<L>(world);
     }
 
+    /// Appends the hits of some rays, from a row of their queue on.
     #[inline(always)]
     #[allow(clippy::too_many_arguments, reason = "a hit in lanes is many numbers, and nobody else wants them together")]
-    fn push<L: Lanes>(&mut self, hit: L::Mask, row: L, o: Vec3<L>, d: Vec3<L>, t: L, primitive: L, load: &Load<L>) {
-        let (p, wo, pixel) = (o + d * t, -d, load.pixel);
+    pub(super) fn push<L: Lanes>(
+        &mut self,
+        hit: L::Mask,
+        row: usize,
+        (o, d): (Vec3<L>, Vec3<L>),
+        t: L,
+        primitive: L,
+        load: &Load<L>,
+        face: &Face<L>,
+    ) {
+        let (row, pixel, wo) = (L::ramp(row), load.pixel, -d);
+        let p = o + d * L::select(primitive.eq(L::splat(SKY)), L::splat(0.0), t);
         let Weight { attenuation: a, factor: f } = load.weight;
-        self.found.push(hit, [row, pixel, primitive, t, p.x, p.y, p.z, wo.x, wo.y, wo.z, a.r, a.g, a.b, f.r, f.g, f.b]);
+        let Face { before, after, outer } = *face;
+        self.found.push(
+            hit,
+            [
+                row, pixel, primitive, t, p.x, p.y, p.z, wo.x, wo.y, wo.z, a.r, a.g, a.b, f.r, f.g, f.b, before, after,
+                outer,
+            ],
+        );
     }
 
     #[inline(always)]
-    fn look_up_surfaces<L: Lanes>(&mut self, world: &World) {
+    pub(super) fn look_up_surfaces<L: Lanes>(&mut self, world: &World) {
+        let real_optics = world.render.integrator == Integrator::Whitted;
         self.surface.clear();
+        self.geometric.clear();
         for start in (0..self.len()).step_by(L::WIDTH) {
             let (mut primitives, mut materials) = ([0; MAX_WIDTH], [0.0; MAX_WIDTH]);
             for lane in 0..L::WIDTH.min(self.len() - start) {
-                primitives[lane] = self.primitive(start + lane) as usize;
-                materials[lane] = f64::from(world.material_of(primitives[lane]));
+                if self.found.at(PRIMITIVE, start + lane) != SKY {
+                    primitives[lane] = self.primitive(start + lane) as usize;
+                    materials[lane] = f64::from(world.material_of(primitives[lane]));
+                }
             }
             let [x, y, z] = self.found.group(POINT, start);
             let [wx, wy, wz] = self.found.group(WO, start);
-            let normal = world.facing_normals::<L>(&primitives, Vec3::new(x, y, z), -Vec3::new(wx, wy, wz)).unit();
+            let (point, dir) = (Vec3::new(x, y, z), -Vec3::new(wx, wy, wz));
+            let within = self.found.lanes::<L>(OUTER, start).eq(L::splat(0.0));
+            let [normal, geometric] = world.facing_normals::<L>(&primitives, point, dir, within);
+            let (normal, active) = (normal.unit(), L::Mask::first(self.len() - start));
             let zero = L::splat(0.0);
             let row = [normal.x, normal.y, normal.z, L::load(&materials), zero, zero, zero, zero, zero, zero];
-            self.surface.push(L::Mask::first(self.len() - start), row);
+            self.surface.push(active, row);
+            if real_optics {
+                self.geometric.push(active, geometric.unit().into());
+            }
         }
     }
 
@@ -114,6 +154,11 @@ impl Hits {
     #[inline(always)]
     pub fn primitive(&self, row: usize) -> u32 {
         index(self.found.at(PRIMITIVE, row)) as u32
+    }
+
+    /// Is there nothing but the background?
+    pub fn is_sky(&self, row: usize) -> bool {
+        self.found.at(PRIMITIVE, row) == SKY
     }
 
     pub fn t(&self, row: usize) -> f64 {
@@ -151,7 +196,8 @@ impl Hits {
     /// The hits from one row on.
     #[inline(always)]
     pub fn batch<'a, L: Lanes>(&'a self, world: &'a World, start: usize) -> Batch<'a, L> {
-        let active = L::Mask::first(self.len() - start);
+        let there = !self.found.lanes::<L>(PRIMITIVE, start).eq(L::splat(SKY));
+        let active = L::Mask::first(self.len() - start) & there;
         let material = self.surface.lanes::<L>(MATERIAL, start);
         let first = self.surface.at(MATERIAL, start);
         let one_material = !(active & !material.eq(L::splat(first))).any();
@@ -168,6 +214,24 @@ pub(crate) struct Batch<'a, L: Lanes> {
     pub active: L::Mask,
     /// Neighbouring hits mostly have the same material: then its numbers need not be gathered.
     one_material: bool,
+}
+
+/// On which side of a surface a ray is, and what it is in, in lanes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Face<L: Lanes> {
+    /// In which solids the ray arrives, and in which it would go on behind the face: handles of `Media`.
+    pub before: L,
+    pub after: L,
+    /// 1 where the ray arrives from outside, else 0.
+    pub outer: L,
+}
+
+impl<L: Lanes> Face<L> {
+    /// A face that lets nothing through.
+    #[inline(always)]
+    pub fn opaque() -> Self {
+        Self { before: L::splat(0.0), after: L::splat(0.0), outer: L::splat(1.0) }
+    }
 }
 
 /// The coefficients of a surface that decide how light goes on.
@@ -200,6 +264,31 @@ impl<L: Lanes> Batch<'_, L> {
     pub fn normal(&self) -> Vec3<L> {
         let [x, y, z] = self.hits.surface.group(NORMAL, self.start);
         Vec3::new(x, y, z)
+    }
+
+    /// The same of the face itself, where the surface is smoothed.
+    #[inline(always)]
+    pub fn geometric_normal(&self) -> Vec3<L> {
+        let [x, y, z] = self.hits.geometric.group(0, self.start);
+        Vec3::new(x, y, z)
+    }
+
+    /// Is nothing there but the background?
+    #[inline(always)]
+    pub fn is_sky(&self) -> L::Mask {
+        self.primitive().eq(L::splat(SKY))
+    }
+
+    #[inline(always)]
+    pub fn face(&self) -> Face<L> {
+        let [before, after, outer] = self.hits.found.group(BEFORE, self.start);
+        Face { before, after, outer }
+    }
+
+    /// The handles of the solids before and behind the face of one hit.
+    pub fn media_of(&self, lane: usize) -> [u32; 2] {
+        let row = (self.start + lane).min(self.hits.len() - 1);
+        [BEFORE, AFTER].map(|column| index(self.hits.found.at(column, row)) as u32)
     }
 
     #[inline(always)]

@@ -24,16 +24,36 @@ use crate::scene::Integrator;
 /// belongs to the models of this file only.
 pub(crate) const T_MIN: f64 = 1e-5;
 
+/// The three ways of blending.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Blend {
+    Lecture,
+    Course2018,
+    Course2020,
+}
+
+impl Blend {
+    /// `None` for other models of light.
+    pub fn of(integrator: Integrator) -> Option<Self> {
+        match integrator {
+            Integrator::Lecture => Some(Self::Lecture),
+            Integrator::Course2018 => Some(Self::Course2018),
+            Integrator::Course2020 => Some(Self::Course2020),
+            Integrator::Whitted => None,
+        }
+    }
+}
+
 /// What does this surface add here?
 #[inline(always)]
-pub(crate) fn contribution<L: Lanes>(hits: &Batch<'_, L>) -> Rgb<L> {
-    local(hits.world.render.integrator, &hits.weight(), &hits.coefficients()) * hits.local_color()
+pub(crate) fn contribution<L: Lanes>(blend: Blend, hits: &Batch<'_, L>) -> Rgb<L> {
+    local(blend, &hits.weight(), &hits.coefficients()) * hits.local_color()
 }
 
 /// Which mirror rays leave from here, with what weight? One that carries nothing is not sent.
 #[inline(always)]
-pub(crate) fn mirror_ray<L: Lanes>(hits: &Batch<'_, L>) -> (L::Mask, Rays<L>) {
-    let weight = mirror(hits.world.render.integrator, &hits.weight(), &hits.coefficients());
+pub(crate) fn mirror_ray<L: Lanes>(blend: Blend, hits: &Batch<'_, L>) -> (L::Mask, Rays<L>) {
+    let weight = mirror(blend, &hits.weight(), &hits.coefficients());
     // Kept of unit length: the errors of a thousand bounces would add up, and boxes have margins for one rounding.
     let dir = snell::reflect(hits.wo(), hits.normal()).unit();
     (hits.active & weight.throughput().not_black(), child(hits, hits.point(), dir, weight))
@@ -41,9 +61,9 @@ pub(crate) fn mirror_ray<L: Lanes>(hits: &Batch<'_, L>) -> (L::Mask, Rays<L>) {
 
 /// Which rays leave on the far side of a glass sphere, with what weight?
 #[inline(always)]
-pub(crate) fn exit_ray<L: Lanes>(hits: &Batch<'_, L>) -> (L::Mask, Rays<L>) {
+pub(crate) fn exit_ray<L: Lanes>(blend: Blend, hits: &Batch<'_, L>) -> (L::Mask, Rays<L>) {
     let coefficients = hits.coefficients();
-    let weight = refracted(hits.world.render.integrator, &hits.weight(), &coefficients);
+    let weight = refracted(blend, &hits.weight(), &coefficients);
     let goes_in = hits.active & hits.is_sphere() & refracts(&coefficients) & weight.throughput().not_black();
     if !goes_in.any() {
         return (goes_in, child(hits, hits.point(), hits.wo(), weight));
@@ -59,41 +79,41 @@ pub(crate) fn exit_ray<L: Lanes>(hits: &Batch<'_, L>) -> (L::Mask, Rays<L>) {
 #[inline(always)]
 fn child<L: Lanes>(hits: &Batch<'_, L>, origin: Vec3<L>, dir: Vec3<L>, weight: Weight<L>) -> Rays<L> {
     let (source, parent, pixel) = (hits.primitive(), hits.ray(), hits.pixel());
-    Rays { origin, dir, load: Load { weight, t_min: L::splat(T_MIN), source, parent, pixel } }
+    Rays { origin, dir, load: Load { weight, t_min: L::splat(T_MIN), source, parent, pixel, medium: L::splat(0.0) } }
 }
 
 /// What the local colour is multiplied by.
 #[inline(always)]
-fn local<L: Lanes>(model: Integrator, ray: &Weight<L>, surface: &Coefficients<L>) -> Rgb<L> {
-    match model {
-        Integrator::Lecture => ray.factor * ray.attenuation * surface.ko,
-        Integrator::Course2018 | Integrator::Course2020 => ray.factor * ray.attenuation,
+fn local<L: Lanes>(blend: Blend, ray: &Weight<L>, surface: &Coefficients<L>) -> Rgb<L> {
+    match blend {
+        Blend::Lecture => ray.factor * ray.attenuation * surface.ko,
+        Blend::Course2018 | Blend::Course2020 => ray.factor * ray.attenuation,
     }
 }
 
 /// What the mirror ray carries.
 #[inline(always)]
-fn mirror<L: Lanes>(model: Integrator, ray: &Weight<L>, surface: &Coefficients<L>) -> Weight<L> {
+fn mirror<L: Lanes>(blend: Blend, ray: &Weight<L>, surface: &Coefficients<L>) -> Weight<L> {
     Weight {
         attenuation: surface.kr * ray.attenuation,
-        factor: match model {
-            Integrator::Lecture => ray.factor * ray.attenuation * surface.ko,
-            Integrator::Course2018 | Integrator::Course2020 => ray.factor,
+        factor: match blend {
+            Blend::Lecture => ray.factor * ray.attenuation * surface.ko,
+            Blend::Course2018 | Blend::Course2020 => ray.factor,
         },
     }
 }
 
 /// What the exit ray of a sphere carries.
 #[inline(always)]
-fn refracted<L: Lanes>(model: Integrator, ray: &Weight<L>, surface: &Coefficients<L>) -> Weight<L> {
+fn refracted<L: Lanes>(blend: Blend, ray: &Weight<L>, surface: &Coefficients<L>) -> Weight<L> {
     let white = Rgb::gray(1.0).splat();
-    match model {
-        Integrator::Lecture => Weight {
+    match blend {
+        Blend::Lecture => Weight {
             attenuation: surface.kr * ray.attenuation,
             factor: ray.factor * ray.attenuation * (white - surface.ko),
         },
-        Integrator::Course2018 => Weight { attenuation: Rgb::black(), factor: Rgb::black() },
-        Integrator::Course2020 => Weight { attenuation: (white - surface.kr) * ray.attenuation, factor: ray.factor },
+        Blend::Course2018 => Weight { attenuation: Rgb::black(), factor: Rgb::black() },
+        Blend::Course2020 => Weight { attenuation: (white - surface.kr) * ray.attenuation, factor: ray.factor },
     }
 }
 
@@ -111,14 +131,14 @@ mod tests {
     #[test]
     fn attenuations_compound_in_the_lecture_and_nowhere_else() {
         let surface = Coefficients { kr: Rgb::gray(0.9), ko: Rgb::gray(1.0) };
-        for (model, sixth) in [(Integrator::Lecture, 0.109), (Integrator::Course2018, 0.531)] {
+        for (blend, sixth) in [(Blend::Lecture, 0.109), (Blend::Course2018, 0.531)] {
             let one = Rgb::gray(1.0);
             let mut ray = Weight::<f64> { attenuation: one, factor: one };
             for _ in 0..6 {
-                ray = mirror(model, &ray, &surface);
+                ray = mirror(blend, &ray, &surface);
             }
-            let weight = local(model, &ray, &surface).r;
-            assert!((weight - sixth).abs() < 5e-4, "{model:?}: {weight}"); // three digits are quoted in the design
+            let weight = local(blend, &ray, &surface).r;
+            assert!((weight - sixth).abs() < 5e-4, "{blend:?}: {weight}"); // three digits are quoted in the design
         }
     }
 }

@@ -15,14 +15,17 @@
 mod camera;
 mod generation;
 mod hits;
+mod interfaces;
 mod lecture;
+mod media;
 mod queue;
 mod shading;
 mod statistics;
 mod tree;
+mod whitted;
 
 pub(crate) use generation::Tracer;
 pub use queue::RayKind;
-pub use statistics::{LostLight, RayCounts, Statistics};
+pub use statistics::{LostLight, RayCounts, Statistics, StrayExits};
 pub(crate) use tree::Recorder;
 pub use tree::{Node, RayTree};

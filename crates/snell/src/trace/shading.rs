@@ -1,13 +1,15 @@
 //! The local colour of the hits: ambient light, then light by light, with shadows.
 
-use super::hits::Hits;
+use super::hits::{Batch, Hits};
 use super::lecture::T_MIN;
+use super::media::{Media, Way};
+use super::whitted;
 use crate::film::Rgb;
 use crate::geometry::Vec3;
 use crate::geometry::bvh::{Nearest, PACKET, Packet};
-use crate::lanes::{Columns, Lanes, Mask, index};
+use crate::lanes::{Columns, Lanes, MAX_WIDTH, Mask, index};
 use crate::optics::phong::{self, Surface};
-use crate::scene::Shadows;
+use crate::scene::{Integrator, Shadows};
 use crate::world::{LightSource, World};
 
 /// Columns of the rays towards a light.
@@ -23,17 +25,26 @@ pub(crate) struct ShadowRays {
     lit: Vec<u64>,
     /// Row of the hit, origin, direction, distance of the light, primitive that the ray leaves.
     rays: Columns<9>,
+    /// Nothing nearer than this blocks a light.
+    t_min: f64,
+    /// With tinted shadows what of the light reaches each hit.
+    light: Columns<3>,
 }
 
 impl ShadowRays {
     /// Decides which hits a light reaches: those that face it, and, with shadows, see it. Returns how many rays that took.
     #[inline(always)]
-    fn aim<L: Lanes>(&mut self, world: &World, hits: &Hits, light: &LightSource, packet: &mut Packet) -> usize {
+    fn aim<L: Lanes>(&mut self, media: &mut Media<'_>, hits: &Hits, light: &LightSource, packet: &mut Packet) -> usize {
+        let world = media.world();
         self.wi.clear();
         self.rays.clear();
         self.lit.clear();
         self.lit.resize(hits.len().div_ceil(64), 0);
-        let with_shadows = world.render.shadows == Shadows::Opaque;
+        let with_shadows = world.render.shadows != Shadows::Off;
+        let tinted = world.render.shadows == Shadows::Tinted;
+        self.light.clear();
+        let real_optics = world.render.integrator == Integrator::Whitted;
+        self.t_min = if real_optics { 0.0 } else { T_MIN };
         let mut count = 0;
         for start in (0..hits.len()).step_by(L::WIDTH) {
             let batch = hits.batch::<L>(world, start);
@@ -44,13 +55,16 @@ impl ShadowRays {
                 let to_light = light.at.splat() - point;
                 (to_light.unit(), to_light.length())
             };
-            let mut lit = batch.active & batch.normal().dot(wi).gt(L::splat(0.0));
-            self.wi.push(batch.active, wi.into());
-            if with_shadows && lit.any() {
+            let shows = if real_optics { whitted::has_local_color(&batch) } else { batch.active };
+            let mut lit = shows & batch.normal().dot(wi).gt(L::splat(0.0));
+            self.wi.push(L::Mask::first(hits.len() - start), wi.into());
+            if with_shadows && (tinted || lit.any()) {
                 count += lit.bits().count_ones() as usize;
-                if let Some(spheres) = world.tree.few() {
-                    let nothing = Nearest::none(lit, L::splat(T_MIN), distance, source);
-                    lit = lit & !nothing.among(spheres, point, wi).hit;
+                if tinted {
+                    lit = self.tint(media, &batch, lit, wi, distance);
+                } else if let Some(spheres) = world.tree.few() {
+                    let nothing = Nearest::none(lit, L::splat(self.t_min), distance, source);
+                    lit = lit & !nothing.among(real_optics, spheres, point, wi).hit;
                 } else {
                     let (row, p) = (L::ramp(start), point);
                     self.rays.push(lit, [row, p.x, p.y, p.z, wi.x, wi.y, wi.z, distance, source]);
@@ -62,6 +76,29 @@ impl ShadowRays {
         count
     }
 
+    /// Follows the light straight through what is transparent; says which hits any of it reaches.
+    fn tint<L: Lanes>(
+        &mut self,
+        media: &mut Media<'_>,
+        hits: &Batch<'_, L>,
+        lit: L::Mask,
+        wi: Vec3<L>,
+        distance: L,
+    ) -> L::Mask {
+        let (point, source, medium) = (hits.point(), hits.primitive(), hits.face().before);
+        let (mut light, mut reached) = ([[0.0; MAX_WIDTH]; 3], 0);
+        for lane in (0..L::WIDTH).filter(|&lane| lit.test(lane)) {
+            let way = Way { origin: point.lane(lane), dir: wi.lane(lane), source: source.lane(lane) };
+            let passed = media.light_along(&way, distance.lane(lane), index(medium.lane(lane)) as u32);
+            reached |= u32::from(passed != Rgb::gray(0.0)) << lane;
+            for (column, value) in light.iter_mut().zip(passed.to_array()) {
+                column[lane] = value;
+            }
+        }
+        self.light.push(L::Mask::first(L::WIDTH), light.map(|column| L::load(&column)));
+        L::Mask::from_bits(reached)
+    }
+
     /// Takes the light from the hits whose rays towards it meet anything.
     #[inline(always)]
     fn block<L: Lanes>(&mut self, world: &World, packet: &mut Packet) {
@@ -70,7 +107,15 @@ impl ShadowRays {
             let count = (self.rays.len() - first).min(PACKET);
             for start in (0..count).step_by(L::WIDTH) {
                 let [x, y, z, dx, dy, dz, distance, source] = self.rays.group::<L, 8>(ORIGIN, first + start);
-                packet.set(start, Vec3::new(x, y, z), Vec3::new(dx, dy, dz), L::splat(T_MIN), distance, source, shear);
+                packet.set(
+                    start,
+                    Vec3::new(x, y, z),
+                    Vec3::new(dx, dy, dz),
+                    L::splat(self.t_min),
+                    distance,
+                    source,
+                    shear,
+                );
             }
             let mut blocked = world.tree.intersect::<L, true>(packet, u64::MAX >> (PACKET - count));
             while blocked != 0 {
@@ -85,11 +130,13 @@ impl ShadowRays {
 /// Sums up the local colour of every hit. Returns how many shadow rays that took.
 #[inline(always)]
 pub(crate) fn local_colors<L: Lanes>(
-    world: &World,
+    media: &mut Media<'_>,
     hits: &mut Hits,
     shadow: &mut ShadowRays,
     packet: &mut Packet,
 ) -> usize {
+    let world = media.world();
+    let tinted = world.render.shadows == Shadows::Tinted;
     let ambient = world.ambient.splat::<L>();
     for start in (0..hits.len()).step_by(L::WIDTH) {
         let light = ambient * hits.batch::<L>(world, start).material_color(|m| m.ka);
@@ -97,8 +144,7 @@ pub(crate) fn local_colors<L: Lanes>(
     }
     let mut rays = 0;
     for light in &world.lights {
-        rays += shadow.aim::<L>(world, hits, light, packet);
-        let intensity = light.color.splat::<L>();
+        rays += shadow.aim::<L>(media, hits, light, packet);
         for start in (0..hits.len()).step_by(L::WIDTH) {
             let lit = L::Mask::from_bits((shadow.lit[start / 64] >> (start % 64)) as u32);
             if !lit.any() {
@@ -110,6 +156,11 @@ pub(crate) fn local_colors<L: Lanes>(
                 ks: batch.material_color(|m| m.ks),
                 spow: batch.material(|m| m.spow),
             };
+            let mut intensity = light.color.splat::<L>();
+            if tinted {
+                let [r, g, b] = shadow.light.group(0, start);
+                intensity = intensity * Rgb::new(r, g, b);
+            }
             let [x, y, z] = shadow.wi.group(0, start);
             let before = batch.local_color();
             let [diffuse, highlight] =

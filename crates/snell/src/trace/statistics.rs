@@ -9,6 +9,28 @@ pub struct Statistics {
     pub depth: Vec<u64>,
     /// Branches that were cut short.
     pub lost: LostLight,
+    /// Exits from solids that had not been entered.
+    pub stray: StrayExits,
+}
+
+/// Rays that met a face from inside without having entered its solid: it was passed over.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct StrayExits {
+    /// How many.
+    pub count: u64,
+    /// The first pixel of the picture that one of them belongs to: its number, row by row.
+    pub first_pixel: Option<u64>,
+}
+
+impl StrayExits {
+    pub(crate) fn add(&mut self, pixel: usize) {
+        self.merge(&Self { count: 1, first_pixel: Some(pixel as u64) });
+    }
+
+    pub(crate) fn merge(&mut self, other: &Self) {
+        self.count += other.count;
+        self.first_pixel = [self.first_pixel, other.first_pixel].into_iter().flatten().min();
+    }
 }
 
 /// Rays by kind.
@@ -98,6 +120,7 @@ impl Statistics {
         for (sum, count) in self.depth.iter_mut().zip(&other.depth) {
             *sum += count;
         }
+        self.stray.merge(&other.stray);
         self.lost.rays += other.lost.rays;
         self.lost.sum += other.lost.sum;
         if other.lost.rays > 0 {

@@ -22,10 +22,12 @@ pub struct Node {
     pub dir: Vec3,
     /// What it can add to the pixel for each unit of radiance.
     pub throughput: Rgb,
-    /// What it hit: primitive, distance, and the unit normal that faces the ray.
+    /// What it hit: primitive, distance, and the unit normal that faces the ray; `None` also for the background.
     pub hit: Option<(u32, f64, Vec3)>,
-    /// What that surface adds to the pixel.
+    /// What that surface, or the background, adds to the pixel.
     pub contribution: Rgb,
+    /// Is it added? Not where there is nothing to be seen.
+    adds: bool,
 }
 
 /// All rays of one pixel, in the order in which they are traced and added.
@@ -33,12 +35,15 @@ pub struct Node {
 pub struct RayTree {
     /// The rays, generation by generation.
     pub nodes: Vec<Node>,
+    /// The throughput of the rays that were not followed: too deep, too many, or carrying too little.
+    pub lost: Rgb,
 }
 
 impl RayTree {
     /// The contributions added up in the engine's order: the pixel, bit for bit.
     pub fn sum(&self) -> Rgb {
-        let contributions = self.nodes.iter().filter(|n| n.hit.is_some()).map(|n| n.contribution);
+        // What adds nothing is not added: 0 and -0 are not the same bits.
+        let contributions = self.nodes.iter().filter(|n| n.adds).map(|n| n.contribution);
         contributions.fold(Rgb::black(), |sum, c| sum + c)
     }
 }
@@ -66,12 +71,15 @@ impl Observer for Recorder {
                 throughput: load.weight.throughput(),
                 hit: None,
                 contribution: Rgb::black(),
+                adds: false,
             });
         }
         for hit in 0..hits.len() {
             let node = &mut self.tree.nodes[start + hits.ray(hit)];
-            node.hit = Some((hits.primitive(hit), hits.t(hit), hits.normal(hit)));
-            node.contribution = hits.contribution(hit);
+            if !hits.is_sky(hit) {
+                node.hit = Some((hits.primitive(hit), hits.t(hit), hits.normal(hit)));
+            }
+            (node.contribution, node.adds) = (hits.contribution(hit), true);
         }
         self.parents = start;
         self.depth += 1;

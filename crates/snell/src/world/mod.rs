@@ -1,18 +1,24 @@
 //! The compiled scene: arrays, a tree, a camera. Immutable; holds no names but for messages.
 
 mod camera;
+mod solid;
 mod surface;
 
 pub use camera::CameraFrame;
+use solid::MeshSolids;
+pub(crate) use solid::{Medium, NO_SOLID, Solid};
 pub use surface::NO_PRIMITIVE;
 use surface::{FLAT, Placement, Surfaces};
 
 use crate::film::Rgb;
+use crate::geometry::bvh::MARGIN;
 use crate::geometry::bvh::{Bvh, Instance, Quality, Shapes, TreeStatistics};
 use crate::geometry::mesh::MAX_SMOOTHED_VALENCE;
+use crate::geometry::solid::{Options, repair};
 use crate::geometry::{Affine, Bounds, Sphere, TriangleMesh, Vec3, triangle};
 use crate::scene::{
-    Integrator, LARGEST_NUMBER, Material, Mesh, Problem, Render, Scene, Step, Transform, Warning, WarningCode, validate,
+    Integrator, LARGEST_NUMBER, Material, Mesh, OpenMesh, Problem, Render, Scene, Step, Transform, Warning,
+    WarningCode, validate,
 };
 use indexmap::IndexMap;
 
@@ -61,6 +67,12 @@ pub struct World {
     /// Of the meshes that stand in several places, and these places in the order of their ids.
     models: Vec<Surfaces>,
     placements: Vec<Placement>,
+    /// What light goes through, where there is real optics.
+    pub(crate) solids: Vec<Solid>,
+    /// Light from where nothing is.
+    pub(crate) background: Rgb,
+    /// How far a computed hit may be off, in scene units: faces nearer to each other than this along a ray are in one place.
+    pub(crate) clearance: f64,
     /// Is no triangle smooth?
     all_flat: bool,
     /// The tree, with the triangles in its leaves and the trees of the models.
@@ -81,6 +93,8 @@ struct Parts {
     models: Vec<Triangles>,
     /// The meshes to be placed, when all ids before them are known: scene index, name, model, map.
     placed: Vec<(usize, String, usize, Affine)>,
+    /// The solids of each model.
+    solids: Vec<Vec<Solid>>,
 }
 
 impl World {
@@ -112,6 +126,9 @@ impl World {
             surfaces: Surfaces::default(),
             models: Vec::new(),
             placements: Vec::new(),
+            solids: Vec::new(),
+            background: scene.background,
+            clearance: 0.0,
             all_flat: true,
             tree: Bvh::default(),
         };
@@ -126,7 +143,14 @@ impl World {
             let name = s.name.clone().unwrap_or_else(|| format!("sphere {}", i + 1));
             world.objects.push(Object { name, first: i as u32, count: 1 });
             world.spheres.push(Sphere { center: s.center.into(), radius: s.radius });
-            world.surfaces.material_of.push(material_ids.get(s.material.as_str()).copied().unwrap_or(0));
+            let material = material_ids.get(s.material.as_str()).copied().unwrap_or(0);
+            world.surfaces.material_of.push(material);
+            if world.refracts(material) {
+                world.surfaces.solid_of.resize(i, NO_SOLID);
+                world.surfaces.solid_of.push(world.solids.len() as u32);
+                let (medium, bounds) = (Medium::of(&world.materials[material as usize]), world.spheres[i].bounds());
+                world.solids.push(Solid { medium, inward: false, touches: false, bounds });
+            }
         }
         world.surfaces.corner_normals_of.resize(world.spheres.len(), FLAT);
         let mut parts = Parts::default();
@@ -148,6 +172,11 @@ impl World {
     pub fn brute_force(mut self) -> Self {
         self.tree = self.tree.flat();
         self
+    }
+
+    /// Is there real optics, and does light go through this material?
+    fn refracts(&self, material: u32) -> bool {
+        self.render.integrator == Integrator::Whitted && self.materials[material as usize].is_transparent()
     }
 
     /// Number of primitives.
@@ -204,6 +233,13 @@ impl World {
         let slots = slot_materials(mesh, source, material_ids).map_err(|m| problem("materials", m))?;
 
         let name = mesh.name.clone().or_else(|| mesh.file.clone()).unwrap_or_else(|| format!("mesh {}", index + 1));
+        let material_of = |face: usize, mesh_of: &TriangleMesh| match mesh_of.face_slots.get(face) {
+            Some(&slot) if mesh.material.is_none() => slots[slot as usize],
+            _ => slots[0],
+        };
+        let (placed, solids) = self
+            .solids_of(&name, &place("open"), mesh, placed, &material_of)
+            .map_err(|(message, help)| Problem { place: place("file"), message, help: Some(help) })?;
         let corner_normals = (mesh.smooth_angle > 0.0).then(|| placed.smooth_normals(mesh.smooth_angle));
         let is_model = !mesh.instances.is_empty();
         let (surfaces, triangles) = if is_model {
@@ -214,6 +250,8 @@ impl World {
             (Some(&mut self.surfaces), Some(&mut parts.triangles))
         };
         let (Some(surfaces), Some(triangles)) = (surfaces, triangles) else { return Ok(()) };
+        // Solids of a model are numbered from 0, and get their own in each place.
+        let first_solid = if is_model { 0 } else { self.solids.len() as u32 };
         let (first, base) = (surfaces.material_of.len() as u32, triangles.vertices.len() as u32);
         let mut without_area = 0usize;
         let mut used = vec![false; self.materials.len()];
@@ -222,19 +260,28 @@ impl World {
                 without_area += 1;
                 continue;
             }
-            let material = match placed.face_slots.get(f) {
-                Some(&slot) if mesh.material.is_none() => slots[slot as usize],
-                _ => slots[0],
-            };
+            let material = material_of(f, &placed);
             used[material as usize] = true;
             triangles.faces.push(face.map(|v| v + base));
+            surfaces.solid_of.resize(surfaces.material_of.len(), NO_SOLID);
             surfaces.material_of.push(material);
+            if let Some(solids) = &solids {
+                let transparent = self.materials[material as usize].is_transparent();
+                let solid = if transparent { solids.solid_of[f] } else { NO_SOLID };
+                surfaces.solid_of.push(if solid == NO_SOLID { NO_SOLID } else { first_solid + solid });
+            }
             surfaces
                 .corner_normals_of
                 .push(corner_normals.as_ref().map_or(FLAT, |_| surfaces.corner_normals.len() as u32));
             surfaces.corner_normals.extend(corner_normals.as_ref().map(|normals| normals[f]));
         }
         triangles.vertices.extend(&placed.vertices);
+        let solids = solids.map_or(Vec::new(), |solids| solids.solids);
+        if is_model {
+            parts.solids.push(solids);
+        } else {
+            self.solids.extend(solids);
+        }
         if is_model {
             let model = self.models.len() - 1;
             let maps = mesh.instances.iter().map(|steps| whole_map(steps));
@@ -245,6 +292,55 @@ impl World {
         }
         self.warn_about(&name, &place("file"), &placed, mesh, without_area, &used);
         Ok(())
+    }
+
+    /// The mesh, with its holes filled if that was asked for, and its solids if light goes through it. Fails with what is wrong
+    /// and what to do.
+    fn solids_of(
+        &mut self,
+        name: &str,
+        place: &[Step],
+        mesh: &Mesh,
+        placed: TriangleMesh,
+        material_of: &impl Fn(usize, &TriangleMesh) -> u32,
+    ) -> Result<(TriangleMesh, Option<MeshSolids>), (String, String)> {
+        let materials = (0..placed.faces.len()).map(|f| material_of(f, &placed));
+        let mut media = materials.filter(|&m| self.refracts(m)).map(|m| Medium::of(&self.materials[m as usize]));
+        let Some(medium) = media.next() else { return Ok((placed, None)) };
+        if media.any(|other| other != medium) {
+            let message =
+                format!("mesh `{name}` has faces of different glasses, so that it is not clear what is inside");
+            return Err((
+                message,
+                "give all its transparent materials the same eta, absorption and priority".to_owned(),
+            ));
+        }
+        drop(media);
+        let why_not = match MeshSolids::of(&placed, medium) {
+            Ok(solids) => return Ok((placed, Some(solids))),
+            Err(why_not) => why_not,
+        };
+        let message = format!("mesh `{name}` is transparent but not a solid: {why_not}");
+        let help =
+            "`snell check` shows what is wrong with it and can repair it; or add open = \"fill\" or open = \"opaque\"";
+        match mesh.open {
+            None => Err((message, help.to_owned())),
+            Some(OpenMesh::Opaque) => {
+                let message = format!("{message}; it is opaque, as `open` says");
+                self.warnings.push(Warning { code: WarningCode::MeshNotRefracted, place: place.to_vec(), message });
+                Ok((placed, None))
+            }
+            Some(OpenMesh::Fill) => {
+                let (filled, _) = repair(&placed, &Options::default());
+                match MeshSolids::of(&filled, medium) {
+                    Ok(solids) => Ok((filled, Some(solids))),
+                    Err(why_not) => Err((
+                        format!("mesh `{name}` is transparent, and with its holes filled still not a solid: {why_not}"),
+                        "`snell check` shows what is wrong with it; or add open = \"opaque\"".to_owned(),
+                    )),
+                }
+            }
+        }
     }
 
     fn warn_about(
@@ -270,9 +366,9 @@ impl World {
                 warn(WarningCode::NotSmoothed, message);
             }
         }
-        let refracts = |m: &Material| m.ko.to_array().iter().sum::<f64>() < 3.0;
-        let transparent = self.materials.iter().zip(used).any(|(m, &used)| used && refracts(m));
-        if transparent && self.render.integrator != Integrator::Course2018 {
+        let transparent = self.materials.iter().zip(used).any(|(m, &used)| used && m.is_transparent());
+        let refracts_spheres = matches!(self.render.integrator, Integrator::Lecture | Integrator::Course2020);
+        if transparent && refracts_spheres {
             let message = format!(
                 "mesh `{name}` has a transparent material, but this integrator refracts only in spheres: \
                  its transparent share is not drawn"
@@ -308,6 +404,7 @@ impl World {
             boxes.push(bounds);
         }
         let (reach, farthest) = (everything.diagonal(), everything.farthest());
+        self.clearance = MARGIN * (reach + farthest);
         // In the space of a model rays come from everywhere that any of its instances sees.
         let mut seen: Vec<Bounds> = parts.models.iter().map(|m| Bounds::of(m.vertices.iter().copied())).collect();
         let mut instances = Vec::with_capacity(parts.placed.len());
@@ -319,8 +416,14 @@ impl World {
             seen[*model] = seen[*model].union(Bounds::of(everything.corners().map(|c| instance.to_model.apply(c))));
             let count = self.models[*model].material_of.len();
             self.objects.push(Object { name: name.clone(), first: first as u32, count: count as u32 });
-            let placement =
-                Placement { model: *model, first: first as u32, to_world: *map, to_model: instance.to_model };
+            let placement = Placement {
+                model: *model,
+                first: first as u32,
+                first_solid: self.solids.len() as u32,
+                to_world: *map,
+                to_model: instance.to_model,
+            };
+            self.solids.extend(parts.solids[*model].iter().map(|solid| solid.placed(map)));
             if count > 0 {
                 self.placements.push(placement);
                 instances.push(instance);
@@ -335,8 +438,12 @@ impl World {
             Bvh::build(&shapes, vec![], seen.diagonal(), quality, threads)
         });
         let models = models.collect();
+        let touching = self.touching(&shapes, &instances);
         let shapes = Shapes { instances: &instances, ..shapes };
         self.tree = Bvh::build(&shapes, models, reach, quality, threads);
+        for (solid, touches) in self.solids.iter_mut().zip(touching) {
+            solid.touches = touches;
+        }
         Ok(())
     }
 }

@@ -1,6 +1,7 @@
 //! What surface is at a hit: its normal, its material.
 
 use super::World;
+use crate::film::Rgb;
 use crate::geometry::ray::{Shear, axes, main_axis};
 use crate::geometry::{Affine, Vec3, triangle};
 use crate::lanes::{Lanes, MAX_WIDTH, Mask};
@@ -15,6 +16,8 @@ pub(super) const FLAT: u32 = u32::MAX;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Surfaces {
     pub material_of: Vec<u32>,
+    /// The solid whose surface each is; `NO_SOLID`, or no entry at all, where nothing goes through.
+    pub solid_of: Vec<u32>,
     /// Normals at the corners of the triangles that are smooth.
     pub corner_normals: Vec<[Vec3; 3]>,
     /// For each primitive where its corner normals are, `FLAT` if it has none; empty if none has any.
@@ -28,6 +31,8 @@ pub(super) struct Placement {
     pub model: usize,
     /// Id of its first triangle here.
     pub first: u32,
+    /// Number of its first solid here.
+    pub first_solid: u32,
     pub to_world: Affine,
     pub to_model: Affine,
 }
@@ -35,6 +40,7 @@ pub(super) struct Placement {
 impl Surfaces {
     pub fn memory(&self) -> usize {
         size_of_val(self.material_of.as_slice())
+            + size_of_val(self.solid_of.as_slice())
             + size_of_val(self.corner_normals.as_slice())
             + size_of_val(self.corner_normals_of.as_slice())
     }
@@ -54,7 +60,7 @@ impl Surfaces {
 
 impl World {
     /// The placement of a primitive and its id in the model; `None` where it stands for itself.
-    fn placement(&self, primitive: usize) -> Option<(&Placement, usize)> {
+    pub(super) fn placement(&self, primitive: usize) -> Option<(&Placement, usize)> {
         let after = self.placements.partition_point(|p| p.first as usize <= primitive);
         let placement = self.placements[..after].last()?;
         Some((placement, primitive - placement.first as usize))
@@ -69,12 +75,33 @@ impl World {
         }
     }
 
+    /// Does the outer side of a transparent surface show something besides what it reflects?
+    pub(crate) fn shows(&self, primitive: usize) -> bool {
+        let material = &self.materials[self.material_of(primitive) as usize];
+        material.ko != Rgb::gray(0.0) || material.emission != Rgb::gray(0.0)
+    }
+
+    /// The share of light that passes the outer side of a transparent surface, without what Fresnel reflects.
+    pub(crate) fn lets_through(&self, primitive: usize) -> Rgb {
+        let material = &self.materials[self.material_of(primitive) as usize];
+        let clear = Rgb::gray(1.0) - material.ko;
+        if material.dyed { clear * material.kd } else { clear }
+    }
+
+    /// The unit normal of the face itself, outward.
+    pub(crate) fn geometric_normal(&self, primitive: usize, point: Vec3) -> Vec3 {
+        match self.spheres.get(primitive) {
+            Some(sphere) => (point - sphere.center).unit(),
+            None => triangle::normal(self.corners(primitive)),
+        }
+    }
+
     fn material_in_model(&self, primitive: usize) -> u32 {
         self.placement(primitive).map_or(0, |(placement, id)| self.models[placement.model].material_of[id])
     }
 
     /// The corners of a triangle, in the space of the world.
-    fn corners(&self, primitive: usize) -> [Vec3; 3] {
+    pub(super) fn corners(&self, primitive: usize) -> [Vec3; 3] {
         match self.placement(primitive) {
             None => self.tree.corners(primitive),
             Some((placement, id)) => {
@@ -92,23 +119,24 @@ impl World {
         Some(placement.to_model.turn_normal_back(normal))
     }
 
-    /// The normals at some hits, turned to face rays of these directions, not yet of unit length. The geometric normal
-    /// decides the side.
+    /// The shading and the geometric normals at some hits, turned to face rays of these directions, not yet of unit length. The
+    /// geometric normal decides the side; on spheres `within` says which rays come from inside.
     #[inline(always)]
     pub(crate) fn facing_normals<L: Lanes>(
         &self,
         primitives: &[usize; MAX_WIDTH],
         point: Vec3<L>,
         dir: Vec3<L>,
-    ) -> Vec3<L> {
+        within: L::Mask,
+    ) -> [Vec3<L>; 2] {
         let bit = |lane: usize| u32::from(primitives[lane] < self.spheres.len()) << lane;
         let spheres = L::Mask::from_bits((0..L::WIDTH).map(bit).sum());
         let mut normal = point;
         if spheres.any() {
-            // Only near roots count, so the ray is outside.
             let center = |lane: usize| self.spheres.get(primitives[lane]).map_or(Vec3::default(), |s| s.center);
             let one = primitives[..L::WIDTH].iter().all(|&p| p == primitives[0]);
             normal = normal - if one { center(0).splat() } else { Vec3::from_fn(center) };
+            normal = Vec3::select(within, -normal, normal);
         }
         if (!spheres).any() {
             // A lane with a sphere gets a triangle without area, and is not looked at.
@@ -129,8 +157,9 @@ impl World {
                 })
             };
             let behind = flat.dot(dir).gt(L::splat(0.0));
-            normal = Vec3::select(spheres, normal, Vec3::select(behind, -smooth, smooth));
+            let (smooth, flat) = (Vec3::select(behind, -smooth, smooth), Vec3::select(behind, -flat, flat));
+            return [Vec3::select(spheres, normal, smooth), Vec3::select(spheres, normal, flat)];
         }
-        normal
+        [normal, normal]
     }
 }

@@ -43,6 +43,7 @@ impl Bvh {
     pub(super) fn visit<L: Lanes, const ANY: bool>(&self, packet: &mut Packet, rays: u64, instance: &Instance) -> u64 {
         let mut inner = packet.inner.take().unwrap_or_default();
         let first = L::splat(f64::from(instance.first));
+        inner.two_sided = packet.two_sided;
         for (start, _) in groups::<L>(rays) {
             let origin = instance.to_model.apply(Packet::vector::<L>(&packet.origin, start, [0, 1, 2]));
             let dir = instance.to_model.turn(Packet::vector::<L>(&packet.dir, start, [0, 1, 2]));

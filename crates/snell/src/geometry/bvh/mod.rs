@@ -6,6 +6,7 @@
 //! packet or alone: the arithmetic of a ray with a primitive is the same, whichever of the two stands in lanes.
 
 mod build;
+mod crossings;
 mod instance;
 mod nearest;
 mod node;
@@ -36,7 +37,7 @@ use primitives::Primitives;
 /// primitive (sphere: the perpendicular `T − v·d`; triangle: the three vertices in ray space). Thirty-two of them are
 /// more than all of these together with those of the slab test. The textbook discriminant of near spheres errs by more;
 /// their boxes come with that margin ([`sphere::MARGIN`](super::sphere::MARGIN)).
-const MARGIN: f64 = 1.0 / (1u64 << 48) as f64;
+pub(crate) const MARGIN: f64 = 1.0 / (1u64 << 48) as f64;
 
 /// Cache lines that are fetched ahead: a node has four, and a leaf of a mesh about six.
 const FETCHED: usize = 8;

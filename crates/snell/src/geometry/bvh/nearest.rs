@@ -42,19 +42,51 @@ impl<L: Lanes> Nearest<L> {
         }
     }
 
-    /// Keeps a hit where it is nearer; at equal distance that of the lower id.
+    /// Which rays leave this primitive?
+    #[inline(always)]
+    pub(super) fn leave(&self, id: f64) -> L::Mask {
+        self.source.eq(L::splat(id))
+    }
+
+    /// Keeps a hit where it is nearer; at equal distance that of the lower id. The primitive that a ray leaves is not hit.
     #[inline(always)]
     pub(super) fn keep(&mut self, t: L, meets: L::Mask, id: f64) {
         let meets = meets & self.active;
-        if !meets.any() {
-            return;
+        if meets.any() {
+            self.keep_crossing(t, meets & !self.leave(id), id);
         }
+    }
+
+    /// The same, of a primitive that may be crossed by a ray that leaves it.
+    #[inline(always)]
+    pub(super) fn keep_crossing(&mut self, t: L, meets: L::Mask, id: f64) {
+        let meets = meets & self.active;
         let id = L::splat(id);
         let closer = t.lt(self.t) | (t.eq(self.t) & id.lt(self.primitive));
-        let kept = meets & t.gt(self.t_min) & closer & !self.source.eq(id);
+        let kept = meets & t.gt(self.t_min) & closer;
         self.hit = self.hit | kept;
         self.t = L::select(kept, t, self.t);
         self.primitive = L::select(kept, id, self.primitive);
+    }
+
+    /// Tests a sphere: entered from outside only, or with `two_sided` crossed from either side.
+    #[inline(always)]
+    pub(super) fn sphere(
+        &mut self,
+        two_sided: bool,
+        origin: Vec3<L>,
+        dir: Vec3<L>,
+        center: Vec3<L>,
+        radius: L,
+        id: f64,
+    ) {
+        if two_sided {
+            let (t, meets) = sphere::crossing(origin, dir, center, radius, self.t_min, self.leave(id));
+            self.keep_crossing(t, meets, id);
+        } else {
+            let (t, meets) = sphere::intersect(origin, dir, center, radius);
+            self.keep(t, meets, id);
+        }
     }
 }
 
@@ -77,12 +109,11 @@ impl Bvh {
 }
 
 impl<L: Lanes> Nearest<L> {
-    /// The nearest hits of some rays among these spheres.
+    /// The nearest hits of some rays among these spheres, entered from outside only or crossed from either side.
     #[inline(always)]
-    pub fn among(mut self, spheres: &[(f64, Sphere)], origin: Vec3<L>, dir: Vec3<L>) -> Self {
+    pub fn among(mut self, two_sided: bool, spheres: &[(f64, Sphere)], origin: Vec3<L>, dir: Vec3<L>) -> Self {
         for (id, sphere) in spheres {
-            let (t, meets) = sphere::intersect(origin, dir, sphere.center.splat(), L::splat(sphere.radius));
-            self.keep(t, meets, *id);
+            self.sphere(two_sided, origin, dir, sphere.center.splat(), L::splat(sphere.radius), *id);
         }
         self
     }

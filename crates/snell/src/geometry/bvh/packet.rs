@@ -21,13 +21,15 @@ pub(crate) struct Packet {
     pub(super) inv_dir: [Column; 3],
     /// First two numbers of the shears; the third is the inverse of the main component.
     pub(super) shear: [Column; 2],
-    pub(super) t_min: Column,
+    pub t_min: Column,
     /// The primitive that a ray leaves and cannot hit.
-    pub(super) source: Column,
+    pub source: Column,
     /// Distance of the nearest hit so far; `t_max` without one.
     pub t: Column,
     /// The primitive hit there, −1 without one.
     pub primitive: Column,
+    /// Are spheres crossed from either side, or entered from outside only?
+    pub two_sided: bool,
     /// Which rays go towards smaller coordinates, by axis.
     pub(super) negative: [u64; 3],
     /// Which rays have this axis as their main one.
@@ -52,6 +54,7 @@ impl Default for Packet {
             source: zero,
             t: zero,
             primitive: zero,
+            two_sided: false,
             negative: [0; 3],
             main: [0; 3],
             waiting: Vec::new(),

@@ -119,9 +119,15 @@ impl Bvh {
             for start in (0..spheres).step_by(L::WIDTH) {
                 let center = vectors(&numbers[start..], spheres, [0, 1, 2]);
                 let radius = L::load(&numbers[3 * spheres + start..]);
-                let (t, meets) = sphere::intersect(origin, dir, center, radius);
-                let meets = meets & L::Mask::first(spheres - start);
-                found |= keep::<L, ANY>(packet, ray, t, meets, &numbers[4 * spheres + start..]);
+                let ids = &numbers[4 * spheres + start..];
+                let leaves = L::load(ids).eq(L::splat(packet.source[ray]));
+                let (t, meets) = if packet.two_sided {
+                    sphere::crossing(origin, dir, center, radius, L::splat(packet.t_min[ray]), leaves)
+                } else {
+                    let (t, meets) = sphere::intersect(origin, dir, center, radius);
+                    (t, meets & !leaves)
+                };
+                found |= keep::<L>(packet, ray, t, meets & L::Mask::first(spheres - start), ids);
             }
         }
         if triangles > 0 {
@@ -135,8 +141,10 @@ impl Bvh {
                 let b = vectors(&numbers[start..], triangles, [k[0] + 3, k[1] + 3, k[2] + 3]);
                 let c = vectors(&numbers[start..], triangles, [k[0] + 6, k[1] + 6, k[2] + 6]);
                 let hit = triangle::intersect(origin, &shear, [a, b, c]);
-                let meets = hit.meets & L::Mask::first(triangles - start);
-                found |= keep::<L, ANY>(packet, ray, hit.t, meets, &numbers[(TRIANGLE - 1) * triangles + start..]);
+                let ids = &numbers[(TRIANGLE - 1) * triangles + start..];
+                let leaves = L::load(ids).eq(L::splat(packet.source[ray]));
+                let meets = hit.meets & !leaves & L::Mask::first(triangles - start);
+                found |= keep::<L>(packet, ray, hit.t, meets, ids);
             }
         }
         if instances > 0 && !(ANY && found) {
@@ -168,7 +176,8 @@ impl Walker {
         for axis in 0..3 {
             (self.origin[axis], self.inv_dir[axis]) = (packet.origin[axis][ray], packet.inv_dir[axis][ray]);
         }
-        self.t_min = packet.t_min[ray];
+        // A box holds its primitives with more room than there is behind an origin.
+        self.t_min = packet.t_min[ray].max(0.0);
         self.waiting.clear();
     }
 
@@ -231,10 +240,8 @@ fn vectors<L: Lanes>(numbers: &[f64], stride: usize, [x, y, z]: [usize; 3]) -> V
 
 /// Keeps the nearest of some hits; at equal distance that of the lower id.
 #[inline(always)]
-fn keep<L: Lanes, const ANY: bool>(packet: &mut Packet, ray: usize, t: L, meets: L::Mask, ids: &[f64]) -> bool {
-    let id = L::load(ids);
-    let open = meets & t.gt(L::splat(packet.t_min[ray])) & t.le(L::splat(packet.t[ray]));
-    let mut bits = (open & !id.eq(L::splat(packet.source[ray]))).bits();
+fn keep<L: Lanes>(packet: &mut Packet, ray: usize, t: L, meets: L::Mask, ids: &[f64]) -> bool {
+    let mut bits = (meets & t.gt(L::splat(packet.t_min[ray])) & t.le(L::splat(packet.t[ray]))).bits();
     let mut found = false;
     while bits != 0 {
         let lane = bits.trailing_zeros() as usize;

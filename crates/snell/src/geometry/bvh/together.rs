@@ -12,7 +12,7 @@ use super::node::{self, Block, Child, Kind, Node, plane};
 use super::packet::{Octant, Packet, SIZE, groups};
 use super::primitives::{SPHERE, TRIANGLE};
 use crate::geometry::ray::Shear;
-use crate::geometry::{Vec3, sphere, triangle};
+use crate::geometry::{Vec3, triangle};
 use crate::lanes::{Kernel, Lanes, Mask};
 
 /// So few rays of a packet are not worth a beam: they go alone from the root.
@@ -241,8 +241,7 @@ impl Bvh {
                 for i in 0..spheres {
                     let center = vector(numbers, spheres, i, [0, 1, 2]);
                     let radius = L::splat(numbers[3 * spheres + i]);
-                    let (t, meets) = sphere::intersect(origin, dir, center, radius);
-                    nearest.keep(t, meets, numbers[4 * spheres + i]);
+                    nearest.sphere(packet.two_sided, origin, dir, center, radius, numbers[4 * spheres + i]);
                 }
             }
             if triangles > 0 {

@@ -1,0 +1,412 @@
+//! Real optics (`integrator = "whitted"`) against truths that are known otherwise: by analysis, by symmetry, by counting.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
+use snell::film::{Film, Rgb};
+use snell::geometry::{TriangleMesh, Vec3};
+use snell::render::{Options, render, trace_pixel};
+use snell::scene::{
+    Camera, Integrator, Material, Mesh, Render, Rounding, SCHEMA_VERSION, Scene, Shadows, Sphere, Transfer,
+};
+use snell::trace::{RayKind, RayTree};
+use snell::world::World;
+use snell_test_scenes::glass::{blocks, bubbles, cuboid, marbles};
+use std::sync::Arc;
+
+/// An empty white room, seen along −z.
+fn furnace(size: u32) -> Scene {
+    Scene {
+        snell: SCHEMA_VERSION,
+        schema: None,
+        ambient: Rgb::gray(0.0),
+        background: Rgb::gray(1.0),
+        eta_outside: 1.0,
+        render: Render {
+            integrator: Integrator::Whitted,
+            size: [size, size],
+            max_depth: 32,
+            min_throughput: 1.0 / 4096.0,
+            shadows: Shadows::Opaque,
+            transfer: Transfer::Linear,
+            rounding: Rounding::Round,
+        },
+        camera: Camera {
+            eye: [0.0, 0.0, 10.0],
+            look_at: [0.0; 3],
+            up: [0.0, 1.0, 0.0],
+            bounds: [-2.0, 2.0, -2.0, 2.0],
+            near: -5.0,
+            far: None,
+        },
+        lights: vec![],
+        materials: [].into(),
+        spheres: vec![],
+        meshes: vec![],
+    }
+}
+
+fn glass(scene: &mut Scene, name: &str, eta: f64, priority: i32) {
+    let material = Material { ko: Rgb::gray(0.0), eta, priority, ..Material::default() };
+    scene.materials.insert(name.to_owned(), material);
+}
+
+fn ball(scene: &mut Scene, center: [f64; 3], radius: f64, material: &str) {
+    scene.spheres.push(Sphere { name: None, center, radius, material: material.to_owned() });
+}
+
+fn mesh(scene: &mut Scene, geometry: TriangleMesh, material: &str) {
+    let geometry = Some(Arc::new(geometry));
+    scene.meshes.push(Mesh { geometry, material: Some(material.to_owned()), ..Mesh::default() });
+}
+
+fn picture(scene: &Scene) -> Film {
+    render(&World::new(scene).unwrap(), &Options::default()).unwrap().film
+}
+
+/// The tree of the ray that starts at `origin` in direction `dir`: a picture of one pixel.
+fn tree(scene: &Scene, origin: [f64; 3], dir: [f64; 3]) -> RayTree {
+    let mut scene = scene.clone();
+    scene.render.size = [1, 1];
+    let (start, dir) = (Vec3::from(origin), Vec3::from(dir).unit());
+    let eye = start - dir;
+    let up = if dir.y.abs() > 0.9 { [0.0, 0.0, 1.0] } else { [0.0, 1.0, 0.0] };
+    scene.camera = Camera {
+        eye: [eye.x, eye.y, eye.z],
+        look_at: origin,
+        up,
+        bounds: [-1.0, 1.0, -1.0, 1.0],
+        near: -1.0,
+        far: None,
+    };
+    trace_pixel(&World::new(&scene).unwrap(), 0, 0).unwrap().1
+}
+
+/// Origin and direction of the ray that was refracted at every interface, and how often.
+fn straight_through(tree: &RayTree) -> (Vec3, Vec3, usize) {
+    let (mut at, mut count) = (0, 0);
+    while let Some(next) = tree.nodes.iter().position(|n| n.parent == Some(at) && n.kind == RayKind::Refracted) {
+        (at, count) = (next, count + 1);
+    }
+    (tree.nodes[at].origin, tree.nodes[at].dir, count)
+}
+
+/// Nothing is lost and nothing is made: in a white room clear glass of any shape and nesting looks white, but for the
+/// branches that were cut off, which are counted.
+#[test]
+fn a_white_furnace_stays_white() {
+    let mut balls = furnace(24);
+    glass(&mut balls, "crown", 1.5, 0);
+    glass(&mut balls, "water", 1.33, 1);
+    glass(&mut balls, "diamond", 2.42, 0);
+    ball(&mut balls, [0.0; 3], 2.0, "crown");
+    ball(&mut balls, [0.5, 0.2, 0.3], 1.0, "water");
+    ball(&mut balls, [1.5, 1.0, 0.0], 1.2, "diamond");
+    ball(&mut balls, [-1.0, -1.0, 0.5], 1.5, "water");
+    let mut boxes = furnace(24);
+    boxes.materials = balls.materials.clone();
+    mesh(&mut boxes, cuboid([-2.0, -1.0, -1.0], [0.0, 1.0, 1.0]), "crown");
+    mesh(&mut boxes, cuboid([0.0, -1.0, -1.0], [1.5, 1.0, 1.0]), "diamond");
+    mesh(&mut boxes, cuboid([-1.0, -0.5, -0.5], [0.7, 2.0, 0.5]), "water");
+    ball(&mut boxes, [-1.0, 0.0, 0.0], 0.5, "diamond");
+    for scene in [balls, boxes] {
+        for depth in [0, 1, 2, 5, 32] {
+            let mut scene = scene.clone();
+            scene.render.max_depth = depth;
+            let world = World::new(&scene).unwrap();
+            for pixel in 0..24 * 24 {
+                let (radiance, tree) = trace_pixel(&world, pixel % 24, pixel / 24).unwrap();
+                assert_eq!(radiance, tree.sum());
+                let whole = radiance + tree.lost;
+                for channel in whole.to_array() {
+                    // Up to some thousand rays, each with a few roundings of 1e-16.
+                    assert!((channel - 1.0).abs() < 1e-12, "{channel} at {pixel}, depth {depth}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn index_1_is_invisible_to_the_last_bit() {
+    let mut scene = furnace(40);
+    scene.background = Rgb::new(0.1, 0.2, 0.3);
+    scene.ambient = Rgb::gray(0.5);
+    glass(&mut scene, "nothing", 1.0, 0);
+    glass(&mut scene, "crown", 1.5, -1);
+    let red = Material { ka: Rgb::new(0.9, 0.1, 0.1), kr: Rgb::gray(0.4), ..Material::default() };
+    scene.materials.insert("red".to_owned(), red);
+    ball(&mut scene, [0.0, 0.0, -3.0], 2.0, "red");
+    ball(&mut scene, [1.0, 1.0, 1.0], 0.7, "crown");
+    let without = picture(&scene);
+    ball(&mut scene, [-1.0, 0.0, 1.0], 1.2, "nothing");
+    mesh(&mut scene, cuboid([-1.5, -2.0, 2.0], [0.3, 0.5, 3.0]), "nothing");
+    let with = picture(&scene);
+    assert!(with.pixels == without.pixels);
+}
+
+/// Exact first: powers of two change exponents only.
+#[test]
+fn a_scene_scaled_by_a_power_of_two_gives_the_same_bits() {
+    for scene in [bubbles(), marbles(), blocks()] {
+        let mut scene = scene;
+        scene.meshes.retain(|mesh| mesh.instances.is_empty());
+        let expected = picture(&scene);
+        for exponent in [-20, 20] {
+            let factor = libm::exp2(f64::from(exponent));
+            let found = picture(&scaled(&scene, |c| c * factor, factor));
+            assert!(found.pixels == expected.pixels, "2^{exponent}");
+        }
+    }
+}
+
+/// By any other factor, or far away, the same picture but for a few pixels at silhouettes.
+#[test]
+fn a_scene_scaled_or_moved_is_the_same_picture() {
+    let mut scene = blocks();
+    scene.meshes.retain(|mesh| mesh.instances.is_empty());
+    // From where no ray runs along the planes in which faces meet.
+    scene.camera.eye = [53.1, 57.3, 99.7];
+    scene.render.size = [48, 48];
+    let expected = picture(&scene);
+    for (which, (factor, offset)) in [(1e6, 0.0), (1e-6, 0.0), (1.0, 1e5)].into_iter().enumerate() {
+        let found = picture(&scaled(&scene, |c| c * factor + offset, factor));
+        let close = |a: Rgb, b: Rgb| (a - b).to_array().iter().all(|d| d.abs() < 1e-9);
+        let same = found.pixels.iter().zip(&expected.pixels).filter(|(a, b)| close(**a, **b)).count();
+        assert!(same * 1000 >= expected.pixels.len() * 999, "{which}: {same} of {}", expected.pixels.len());
+    }
+}
+
+fn scaled(scene: &Scene, map: impl Fn(f64) -> f64, factor: f64) -> Scene {
+    let mut scene = scene.clone();
+    (scene.camera.eye, scene.camera.look_at) = (scene.camera.eye.map(&map), scene.camera.look_at.map(&map));
+    scene.camera.near *= factor;
+    scene.camera.bounds = scene.camera.bounds.map(|b| b * factor);
+    for light in &mut scene.lights {
+        light.position = light.position.map(|p| p.map(&map));
+    }
+    for sphere in &mut scene.spheres {
+        (sphere.center, sphere.radius) = (sphere.center.map(&map), sphere.radius * factor);
+    }
+    for mesh in &mut scene.meshes {
+        let mut geometry = mesh.geometry.as_deref().unwrap().clone();
+        for v in &mut geometry.vertices {
+            *v = Vec3::new(map(v.x), map(v.y), map(v.z));
+        }
+        mesh.geometry = Some(Arc::new(geometry));
+    }
+    for material in scene.materials.values_mut() {
+        material.sigma_a = material.sigma_a.map(|sigma| sigma * (1.0 / factor));
+        material.attenuation_distance = material.attenuation_distance.map(|distance| distance * factor);
+    }
+    scene
+}
+
+/// A pane displaces by `d = t·sin θ·(1 − cos θ/√(n² − sin² θ))` and leaves the direction what it was.
+#[test]
+fn a_pane_displaces_by_the_formula() {
+    let mut scene = furnace(1);
+    glass(&mut scene, "pane", 1.5, 0);
+    mesh(&mut scene, cuboid([-50.0, -50.0, -2.0], [50.0, 50.0, 0.0]), "pane");
+    for degrees in [0.0, 10.0, 30.0, 45.0, 60.0, 80.0] {
+        let (sin, cos) = snell::lanes::elementary::sin_cos_degrees(degrees);
+        let dir = Vec3::new(sin, 0.0, -cos);
+        let (origin, out, count) = straight_through(&tree(&scene, [-3.0 * sin, 0.01, 3.0 * cos], [sin, 0.0, -cos]));
+        assert_eq!(count, 2, "{degrees}");
+        // A few roundings of numbers of order one.
+        assert!((out - dir).length() < 1e-14);
+        let expected = 2.0 * sin * (1.0 - cos / (1.5f64 * 1.5 - sin * sin).sqrt());
+        let from_axis = origin - Vec3::new(0.0, 0.01, 0.0);
+        let displaced = (from_axis - dir * from_axis.dot(dir)).length();
+        // As above, of numbers up to 12.
+        assert!((displaced - expected).abs() < 1e-13, "{degrees}: {displaced}, not {expected}");
+    }
+}
+
+/// The least deviation of a prism is `2·asin(n·sin(A/2)) − A`, at the symmetric passage.
+#[test]
+fn a_prism_deviates_least_at_the_symmetric_passage() {
+    let mut scene = furnace(1);
+    glass(&mut scene, "prism", 1.5168, 0);
+    // An equilateral prism with its axis along z, one unit from axis to corner.
+    let corner = |degrees: f64, z: f64| {
+        let (sin, cos) = snell::lanes::elementary::sin_cos_degrees(degrees);
+        Vec3::new(cos, sin, z)
+    };
+    let vertices = [90.0, 210.0, 330.0].iter().flat_map(|&d| [corner(d, -9.0), corner(d, 9.0)]).collect();
+    let faces = vec![[0, 4, 2], [1, 3, 5], [0, 2, 3], [0, 3, 1], [2, 4, 5], [2, 5, 3], [4, 0, 1], [4, 1, 5]];
+    mesh(&mut scene, TriangleMesh { vertices, faces, ..TriangleMesh::default() }, "prism");
+    let least = 2.0 * libm::asin(1.5168 * 0.5) - std::f64::consts::FRAC_PI_3;
+    let deviation = |incidence: f64| {
+        // Onto the middle of the left face, whose normal points to 150 degrees.
+        let (sin, cos) = libm::sincos(5.0 * std::f64::consts::FRAC_PI_6 + incidence - std::f64::consts::PI);
+        let at = Vec3::new(-0.433_012_701_892_219_3, 0.25, 0.0);
+        let start = at - Vec3::new(cos, sin, 0.0);
+        let (_, out, count) = straight_through(&tree(&scene, [start.x, start.y, 0.003], [cos, sin, 0.0]));
+        assert_eq!(count, 2);
+        libm::acos(out.dot(Vec3::new(cos, sin, 0.0)))
+    };
+    let symmetric = libm::asin(1.5168 * 0.5);
+    // acos of numbers near 0.78: a few 1e-16 of the cosine, times 1/sin.
+    assert!((deviation(symmetric) - least).abs() < 1e-14);
+    for off in [-0.2, -0.05, -0.01, 0.01, 0.05, 0.2] {
+        assert!(deviation(symmetric + off) > least + 1e-6, "{off}");
+    }
+}
+
+/// A ball lens: `nR/(2(n − 1))` from its centre, for rays near the axis.
+#[test]
+fn a_ball_lens_has_its_focal_length() {
+    let mut scene = furnace(1);
+    for n in [1.33, 1.5, 1.8] {
+        glass(&mut scene, "ball", n, 0);
+        scene.spheres.clear();
+        ball(&mut scene, [0.0; 3], 2.0, "ball");
+        let focus = |height: f64| {
+            let (origin, dir, count) = straight_through(&tree(&scene, [height, 0.0, 9.0], [0.0, 0.0, -1.0]));
+            assert_eq!(count, 2);
+            // Where it crosses the axis, from the centre.
+            -(origin.z + dir.z * (-origin.x / dir.x))
+        };
+        let expected = n * 2.0 / (2.0 * (n - 1.0));
+        // The aberration grows with h²; its coefficient is of order one here. The rest is rounding: 1e-16/h.
+        let h = 1e-4;
+        assert!((focus(h) - expected).abs() < 10.0 * h * h, "{n}: {} {expected}", focus(h));
+        assert!(focus(1.0) < focus(0.5) && focus(0.5) < focus(0.1), "farther out it focuses nearer");
+    }
+}
+
+/// The rainbow: the largest deviation back of rays with one reflection within a drop; `cos i = √((n² − 1)/3)`, 42.0° for water.
+#[test]
+fn the_primary_rainbow_is_where_descartes_found_it() {
+    let n = 1.333;
+    let mut scene = furnace(1);
+    scene.render.min_throughput = 0.0;
+    scene.render.max_depth = 3;
+    glass(&mut scene, "water", n, 0);
+    ball(&mut scene, [0.0; 3], 1.0, "water");
+    let angle = |height: f64| {
+        let tree = tree(&scene, [height, 0.0, 3.0], [0.0, 0.0, -1.0]);
+        let child = |parent: usize, kind: RayKind| {
+            tree.nodes.iter().position(|n| n.parent == Some(parent) && n.kind == kind).unwrap()
+        };
+        let inside = child(0, RayKind::Refracted);
+        let out = child(child(inside, RayKind::Mirror), RayKind::Refracted);
+        // Against the sun: the ray came along −z.
+        libm::acos(tree.nodes[out].dir.z).to_degrees()
+    };
+    let i = libm::acos(((n * n - 1.0) / 3.0f64).sqrt());
+    let expected = (4.0 * libm::asin(libm::sin(i) / n) - 2.0 * i).to_degrees();
+    let largest = (600..1000).map(|k| angle(f64::from(k) / 1000.0)).fold(0.0, f64::max);
+    // Sampled every thousandth of a radius at a maximum: the rest is of second order.
+    assert!((largest - expected).abs() < 1e-3 && (41.9..42.2).contains(&expected), "{largest} {expected}");
+}
+
+/// Clear shells of rising index, one in the other: straight on, each interface lets `1 − ((a − b)/(a + b))²` through.
+#[test]
+fn thirty_nested_shells_let_their_computed_share_through() {
+    let mut scene = furnace(1);
+    scene.render.max_depth = 64;
+    let mut through = 1.0;
+    let mut before = 1.0;
+    for shell in 0..30 {
+        let eta = 1.0 + 0.02 * f64::from(shell + 1);
+        glass(&mut scene, &format!("shell {shell}"), eta, 0);
+        ball(&mut scene, [0.0; 3], 30.0 - f64::from(shell), &format!("shell {shell}"));
+        let r = (before - eta) / (before + eta);
+        through *= (1.0 - r * r) * (1.0 - r * r);
+        before = eta;
+    }
+    let tree = tree(&scene, [0.0, 0.0, 50.0], [0.0, 0.0, -1.0]);
+    let (_, dir, count) = straight_through(&tree);
+    assert_eq!((count, dir), (60, Vec3::new(0.0, 0.0, -1.0)));
+    let deepest = tree.nodes.iter().filter(|n| n.kind == RayKind::Refracted).map(|n| n.depth).max();
+    assert_eq!(deepest, Some(60));
+    let last = tree.nodes.iter().find(|n| n.depth == 60 && n.kind == RayKind::Refracted).unwrap();
+    // Sixty products, a rounding or two each.
+    assert!((last.throughput.r - through).abs() < 1e-14, "{} {through}", last.throughput.r);
+}
+
+/// Straight through a slab of thickness d white light is left with `attenuation_color`, and twice as thick with its square.
+#[test]
+fn absorption_is_the_colour_at_the_thickness() {
+    for (thickness, power) in [(1.0, 1), (2.0, 2)] {
+        let mut scene = furnace(1);
+        let color = Rgb::new(0.8, 0.5, 0.25);
+        let (attenuation_color, attenuation_distance) = (Some(color), Some(1.0));
+        let material = Material { ko: Rgb::gray(0.0), attenuation_color, attenuation_distance, ..Material::default() };
+        scene.materials.insert("dye".to_owned(), material);
+        mesh(&mut scene, cuboid([-9.0, -9.0, -thickness], [9.0, 9.0, 0.0]), "dye");
+        // Index 1, so that nothing is reflected: what absorbs is there all the same.
+        let seen = tree(&scene, [0.3, 0.2, 5.0], [0.0, 0.0, -1.0]).sum();
+        for (seen, color) in seen.to_array().into_iter().zip(color.to_array()) {
+            let expected = if power == 1 { color } else { color * color };
+            // exp(−ln) of numbers near 1: a few roundings.
+            assert!((seen - expected).abs() < 1e-15, "{seen} {expected}");
+        }
+    }
+}
+
+/// A block of water in a block of glass: overlapping, where the higher priority wins, or with faces that coincide.
+#[test]
+fn water_in_glass_looks_the_same_overlapping_or_touching() {
+    let base = |size: u32| {
+        let mut scene = furnace(size);
+        scene.background = Rgb::gray(0.1);
+        scene.ambient = Rgb::gray(1.0);
+        let red = Material { ka: Rgb::new(1.0, 0.2, 0.1), ..Material::default() };
+        scene.materials.insert("red".to_owned(), red);
+        ball(&mut scene, [0.7, 0.4, -4.0], 1.5, "red");
+        scene.camera.eye = [1.0, 1.5, 10.0];
+        scene
+    };
+    // The liquid reaches into the wall, and the wall is there.
+    let mut overlap = base(60);
+    glass(&mut overlap, "glass", 1.5, 1);
+    glass(&mut overlap, "water", 1.33, 0);
+    mesh(&mut overlap, cuboid([-1.5, -1.5, -1.0], [0.0, 1.5, 1.0]), "glass");
+    mesh(&mut overlap, cuboid([-0.5, -1.2, -0.8], [1.5, 1.2, 0.8]), "water");
+    // The liquid ends where the wall begins.
+    let mut touching = base(60);
+    touching.materials = overlap.materials.clone();
+    mesh(&mut touching, cuboid([-1.5, -1.5, -1.0], [0.0, 1.5, 1.0]), "glass");
+    mesh(&mut touching, cuboid([0.0, -1.2, -0.8], [1.5, 1.2, 0.8]), "water");
+    let (a, b) = (picture(&overlap), picture(&touching));
+    let close = |a: Rgb, b: Rgb| (a - b).to_array().iter().all(|d| d.abs() < 1e-9);
+    let same = a.pixels.iter().zip(&b.pixels).filter(|(a, b)| close(**a, **b)).count();
+    // Silhouettes aside, where a rounding decides.
+    assert!(same * 1000 >= a.pixels.len() * 999, "{same} of {}", a.pixels.len());
+}
+
+#[test]
+fn an_open_transparent_mesh_is_refused_and_says_where() {
+    let mut open = cuboid([-1.0; 3], [1.0; 3]);
+    open.faces.pop();
+    let mut scene = furnace(8);
+    glass(&mut scene, "glass", 1.5, 0);
+    mesh(&mut scene, open, "glass");
+    let problem = World::new(&scene).unwrap_err().remove(0);
+    assert!(problem.message.contains("not a solid: 3 of its edges have a face on one side only"), "{problem}");
+    scene.meshes[0].open = Some(snell::scene::OpenMesh::Fill);
+    let filled = picture(&scene);
+    scene.meshes[0].geometry = Some(Arc::new(cuboid([-1.0; 3], [1.0; 3])));
+    let close = |a: Rgb, b: Rgb| (a - b).to_array().iter().all(|d| d.abs() < 1e-9);
+    assert!(filled.pixels.iter().zip(&picture(&scene).pixels).all(|(a, b)| close(*a, *b)));
+    scene.materials["glass"].ko = Rgb::gray(1.0);
+    World::new(&scene).unwrap();
+}
+
+/// The camera within glass sees what the way out of it shows, and no face between the eye and the image plane.
+#[test]
+fn a_camera_in_water_looks_out_through_one_face() {
+    let mut scene = furnace(16);
+    glass(&mut scene, "water", 1.33, 0);
+    ball(&mut scene, [0.0, 0.0, 10.0], 8.0, "water");
+    let world = World::new(&scene).unwrap();
+    let (_, tree) = trace_pixel(&world, 8, 8).unwrap();
+    let r = (0.33f64 / 2.33) * (0.33 / 2.33);
+    let first = tree.nodes.iter().find(|n| n.kind == RayKind::Refracted).unwrap();
+    // Nearly straight on: the reflectance has no slope there.
+    assert!((first.throughput.r - (1.0 - r)).abs() < 1e-3 && first.depth == 1);
+    let whole = tree.sum() + tree.lost;
+    assert!((whole.g - 1.0).abs() < 1e-12);
+}

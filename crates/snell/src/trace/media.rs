@@ -1,0 +1,220 @@
+//! In which solids a ray is, and what medium that makes.
+//!
+//! A ray carries one number, the handle of a set of solids, in the order in which they were entered. The medium around it is
+//! that of the solid with the highest priority, the last entered among equals (Schmidt and Budge, *Simple Nested
+//! Dielectrics in Ray Traced Images*, Journal of Graphics Tools 7(2), 2002); with no solid, the space between the objects.
+
+use crate::film::Rgb;
+use crate::geometry::{Bounds, Vec3};
+use crate::optics::absorption::transmittance_rgb;
+use crate::optics::fresnel::fresnel_dielectric;
+use crate::world::{Medium, NO_SOLID, World};
+use std::collections::BTreeMap;
+
+/// The handle of the set of no solids.
+pub(crate) const OUTSIDE: u32 = 0;
+
+/// A ray from a surface towards a light.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Way {
+    pub origin: Vec3,
+    pub dir: Vec3,
+    /// The primitive that it leaves.
+    pub source: f64,
+}
+
+/// A set of solids.
+#[derive(Clone, Debug)]
+struct Set {
+    /// In the order in which they were entered.
+    solids: Vec<u32>,
+    /// The one whose medium is there.
+    top: u32,
+    medium: Medium,
+}
+
+/// Every set that rays have been in so far. Handles belong to one worker and never reach a picture.
+#[derive(Clone, Debug)]
+pub(crate) struct Media<'a> {
+    world: &'a World,
+    sets: Vec<Set>,
+    handles: BTreeMap<Vec<u32>, u32>,
+    /// What has been worked out: from a set across a solid's surface.
+    across: BTreeMap<(u32, u32), u32>,
+    /// The set that holds the eye; `None` where no solid is near it or its image plane.
+    eye: Option<u32>,
+    crossings: Vec<(f64, u32)>,
+}
+
+impl<'a> Media<'a> {
+    pub fn new(world: &'a World) -> Self {
+        let mut media = Self {
+            world,
+            sets: Vec::new(),
+            handles: BTreeMap::new(),
+            across: BTreeMap::new(),
+            eye: None,
+            crossings: Vec::new(),
+        };
+        media.intern(Vec::new());
+        let camera = &world.camera;
+        let near = Bounds::of(camera.corners().into_iter().chain([camera.eye]));
+        if world.solids.iter().any(|solid| solid.bounds.meets(&near)) {
+            media.eye = Some(media.around(camera.eye));
+        }
+        media
+    }
+
+    /// The solids that hold a point: those whose surface a ray from there crosses outward more often than inward. The order of
+    /// entering is not known; the scene's is taken.
+    fn around(&mut self, point: Vec3) -> u32 {
+        // Any direction will do. Along this one rays seldom meet an edge.
+        let dir = Vec3::new(0.309_016_994_374_947_4, 0.754_877_666_246_692_7, 0.578_548_4).unit();
+        let mut crossings = std::mem::take(&mut self.crossings);
+        crossings.clear();
+        self.world.tree.crossings(point, dir, [0.0, f64::INFINITY], &mut crossings);
+        let mut balance = BTreeMap::new();
+        for &(t, primitive) in &crossings {
+            let solid = self.world.solid_of(primitive as usize);
+            if solid != NO_SOLID {
+                let enters = self.world.enters(primitive as usize, solid, point, dir, t);
+                *balance.entry(solid).or_insert(0) += if enters { -1 } else { 1 };
+            }
+        }
+        self.crossings = crossings;
+        self.intern(balance.into_iter().filter(|&(_, out)| out > 0).map(|(solid, _)| solid).collect())
+    }
+
+    /// Is no solid near the camera, so that all its rays start outside?
+    pub fn camera_is_outside(&self) -> bool {
+        self.eye.is_none()
+    }
+
+    /// The solids in which a camera ray starts: carried along from the eye to the image plane.
+    pub fn at_start(&mut self, origin: Vec3, dir: Vec3) -> u32 {
+        let (eye, mut set) = (self.world.camera.eye, self.eye.unwrap_or(OUTSIDE));
+        let mut crossings = std::mem::take(&mut self.crossings);
+        crossings.clear();
+        self.world.tree.crossings(eye, dir, [0.0, (origin - eye).length()], &mut crossings);
+        for &(t, primitive) in &crossings {
+            set = self.cross(set, primitive, eye, dir, t);
+        }
+        self.crossings = crossings;
+        set
+    }
+
+    /// Across a primitive, if it is a face through which a ray in this set can go: one that leads out of a solid of the set, or
+    /// into one that is not in it.
+    pub fn cross(&mut self, set: u32, primitive: u32, origin: Vec3, dir: Vec3, t: f64) -> u32 {
+        let solid = self.world.solid_of(primitive as usize);
+        if solid == NO_SOLID
+            || self.world.enters(primitive as usize, solid, origin, dir, t) == self.contains(set, solid)
+        {
+            return set;
+        }
+        self.across(set, solid)
+    }
+
+    pub fn world(&self) -> &'a World {
+        self.world
+    }
+
+    fn intern(&mut self, solids: Vec<u32>) -> u32 {
+        if let Some(&handle) = self.handles.get(&solids) {
+            return handle;
+        }
+        let of = |solid: u32| self.world.solids[solid as usize].medium;
+        // The last of the largest.
+        let top = solids.iter().copied().max_by_key(|&solid| of(solid).priority);
+        let outside = Medium { eta: self.world.eta_outside, sigma_a: Rgb::gray(0.0), priority: i32::MIN };
+        let handle = self.sets.len() as u32;
+        let set = Set { top: top.unwrap_or(NO_SOLID), medium: top.map_or(outside, of), solids: solids.clone() };
+        self.sets.push(set);
+        self.handles.insert(solids, handle);
+        handle
+    }
+
+    /// What of the light from `distance` away reaches a point in this set, straight through what is transparent: black behind
+    /// an opaque surface. At each interface the light loses what Fresnel reflects at the angle of its straight way on the side
+    /// of the thinner medium, so that a rim is not black; between them, what the media absorb.
+    pub fn light_along(&mut self, way: &Way, distance: f64, mut set: u32) -> Rgb {
+        let (world, clearance) = (self.world, self.world.clearance);
+        let first = if set == OUTSIDE { 0.0 } else { -clearance };
+        let mut crossings = std::mem::take(&mut self.crossings);
+        crossings.clear();
+        world.tree.crossings(way.origin, way.dir, [first, distance], &mut crossings);
+        let (mut light, mut since) = (Rgb::gray(1.0), 0.0);
+        // What lies in one place is one interface, as for all rays.
+        for place in crossings.chunk_by(|a, b| b.0 - a.0 <= clearance) {
+            let (t, first) = place[0];
+            let mut next = set;
+            for &(t, primitive) in place {
+                let solid = world.solid_of(primitive as usize);
+                let leaves = f64::from(primitive) == way.source;
+                if solid == NO_SOLID {
+                    if t > 0.0 && t < distance && !leaves {
+                        light = Rgb::gray(0.0);
+                    }
+                    continue;
+                }
+                let enters = !self.contains(next, solid);
+                if !(enters && (leaves || t <= 0.0)) {
+                    let after = self.cross(next, primitive, way.origin, way.dir, t);
+                    if enters && after != next {
+                        light = light * world.lets_through(primitive as usize);
+                    }
+                    next = after;
+                }
+            }
+            if self.top(next) != self.top(set) {
+                let (before, after) = (*self.medium(set), *self.medium(next));
+                light = light * transmittance_rgb::<f64>(before.sigma_a, t - since);
+                since = t;
+                let cos_theta_i = world.geometric_normal(first as usize, way.origin + way.dir * t).dot(way.dir).abs();
+                let eta = before.eta.max(after.eta) / before.eta.min(after.eta);
+                light = light * (1.0 - fresnel_dielectric(cos_theta_i, eta));
+            }
+            set = next;
+            if light == Rgb::gray(0.0) {
+                break;
+            }
+        }
+        self.crossings = crossings;
+        light * transmittance_rgb::<f64>(self.medium(set).sigma_a, distance - since)
+    }
+
+    /// Is a ray in this solid?
+    #[inline(always)]
+    pub fn contains(&self, set: u32, solid: u32) -> bool {
+        self.sets[set as usize].solids.contains(&solid)
+    }
+
+    /// Across the surface of a solid: into it, or out of it.
+    pub fn across(&mut self, set: u32, solid: u32) -> u32 {
+        if let Some(&next) = self.across.get(&(set, solid)) {
+            return next;
+        }
+        let mut solids = self.sets[set as usize].solids.clone();
+        match solids.iter().position(|&s| s == solid) {
+            Some(at) => {
+                solids.remove(at);
+            }
+            None => solids.push(solid),
+        }
+        let next = self.intern(solids);
+        self.across.insert((set, solid), next);
+        next
+    }
+
+    /// The solid whose medium is there, [`NO_SOLID`] outside of all.
+    #[inline(always)]
+    pub fn top(&self, set: u32) -> u32 {
+        self.sets[set as usize].top
+    }
+
+    /// The medium that is there.
+    #[inline(always)]
+    pub fn medium(&self, set: u32) -> &Medium {
+        &self.sets[set as usize].medium
+    }
+}

@@ -1,0 +1,174 @@
+//! Solids: what encloses a medium, and which primitives are its surface.
+
+use super::World;
+use crate::film::Rgb;
+use crate::geometry::bvh::{Instance, Shapes};
+use crate::geometry::solid::{Component, EdgePlace, Found, Orientation, Report, structure};
+use crate::geometry::{Affine, Bounds, TriangleMesh, Vec3};
+use crate::scene::Material;
+
+/// "No solid", where the number of one is expected: a primitive that lets no light through.
+pub(crate) const NO_SOLID: u32 = u32::MAX;
+
+/// More solids than this are not compared with each other: all count as touching.
+const COMPARED: usize = 2000;
+
+/// A closed surface with a medium inside.
+#[derive(Clone, Debug)]
+pub(crate) struct Solid {
+    /// What it is made of.
+    pub medium: Medium,
+    /// Do its faces look inward?
+    pub inward: bool,
+    /// May it touch something else, so that a ray meets both in one place?
+    pub touches: bool,
+    /// Its box.
+    pub bounds: Bounds,
+}
+
+/// What fills a solid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Medium {
+    /// Index of refraction.
+    pub eta: f64,
+    /// Absorption per scene unit.
+    pub sigma_a: Rgb,
+    /// Where solids overlap, the highest is there.
+    pub priority: i32,
+}
+
+impl Medium {
+    pub fn of(material: &Material) -> Self {
+        Self { eta: material.eta, sigma_a: material.absorption(), priority: material.priority }
+    }
+}
+
+/// The solids of a mesh: one for each component that is not the wall of a cavity, which belongs to the solid around it.
+pub(super) struct MeshSolids {
+    pub solids: Vec<Solid>,
+    /// For each face its solid.
+    pub solid_of: Vec<u32>,
+}
+
+impl MeshSolids {
+    /// Fails with what keeps the mesh from being a solid.
+    pub fn of(mesh: &TriangleMesh, medium: Medium) -> Result<Self, String> {
+        let report = structure(mesh);
+        if !report.is_solid() {
+            return Err(why_not(&report));
+        }
+        let mut solids = Vec::new();
+        let mut number_of = vec![NO_SOLID; report.components.len()];
+        for (number, component) in number_of.iter_mut().zip(&report.components).filter(|(_, c)| !c.cavity) {
+            *number = solids.len() as u32;
+            let inward = component.orientation == Orientation::Inward;
+            solids.push(Solid { medium, inward, touches: false, bounds: component.bounds });
+        }
+        for i in 0..report.components.len() {
+            if report.components[i].cavity {
+                number_of[i] = around(&report.components[i], &report.components, &number_of);
+            }
+        }
+        // A face without area belongs to no component, and is never hit.
+        let solid_of = report.component_of.iter().map(|&c| number_of.get(c as usize).copied().unwrap_or(NO_SOLID));
+        Ok(Self { solid_of: solid_of.collect(), solids })
+    }
+}
+
+/// The solid of the smallest component whose box holds that of a cavity.
+fn around(cavity: &Component, components: &[Component], number_of: &[u32]) -> u32 {
+    let holds = |outer: &Bounds, inner: &Bounds| outer.union(*inner) == *outer;
+    let all = components.iter().zip(number_of);
+    let candidates = all.filter(|(c, _)| !c.cavity && holds(&c.bounds, &cavity.bounds));
+    let smallest = candidates.min_by(|a, b| a.0.volume.abs().total_cmp(&b.0.volume.abs()));
+    smallest.map_or(NO_SOLID, |(_, &number)| number)
+}
+
+fn why_not(report: &Report) -> String {
+    let at = |p: Vec3| format!("({}, {}, {})", p.x, p.y, p.z);
+    let edges = |found: &Found<EdgePlace>| {
+        found.first.first().map_or(String::new(), |edge| {
+            let [a, b] = edge.ends.map(at);
+            format!(", the first from {a} to {b}")
+        })
+    };
+    if !report.boundary.is_empty() {
+        return format!(
+            "{} of its edges have a face on one side only{}",
+            report.boundary.count,
+            edges(&report.boundary)
+        );
+    }
+    if !report.misoriented.is_empty() {
+        let count = report.misoriented.count;
+        return format!("at {count} of its edges neighbouring faces look opposite ways{}", edges(&report.misoriented));
+    }
+    if !report.non_manifold.is_empty() {
+        let count = report.non_manifold.count;
+        return format!("{count} of its edges have more than two faces{}", edges(&report.non_manifold));
+    }
+    if report.components.is_empty() { "it has no faces".to_owned() } else { "it encloses no volume".to_owned() }
+}
+
+impl Solid {
+    /// The same solid where an instance stands.
+    pub fn placed(&self, map: &Affine) -> Self {
+        let [x, y, z] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|v| map.turn(Vec3::<f64>::from(v)));
+        // A mirror turns faces inside out.
+        let mirrors = x.cross(y).dot(z) < 0.0;
+        let bounds = Bounds::of(self.bounds.corners().map(|corner| map.apply(corner)));
+        Self { inward: self.inward != mirrors, bounds, ..self.clone() }
+    }
+}
+
+impl World {
+    /// Which solids may touch something: those whose box meets that of another solid or object.
+    pub(super) fn touching(&self, shapes: &Shapes<'_>, instances: &[Instance]) -> Vec<bool> {
+        if self.solids.is_empty() {
+            return Vec::new();
+        }
+        // The boxes of the solids first, then those of everything that is none.
+        let mut boxes: Vec<Bounds> = self.solids.iter().map(|solid| solid.bounds).collect();
+        for object in &self.objects {
+            let ids = object.first as usize..(object.first + object.count) as usize;
+            let opaque = ids.filter(|&id| id < shapes.count() && self.solid_of(id) == NO_SOLID);
+            let bounds = opaque.map(|id| shapes.bounds(id)).reduce(Bounds::union);
+            boxes.extend(bounds);
+        }
+        boxes.extend(instances.iter().filter(|i| self.solid_of(i.first as usize) == NO_SOLID).map(|i| i.bounds));
+        let room = Vec3::new(self.clearance, self.clearance, self.clearance);
+        let too_many = self.solids.len() > COMPARED;
+        let touches = |number: usize| {
+            let grown = Bounds { min: boxes[number].min - room, max: boxes[number].max + room };
+            too_many || boxes.iter().enumerate().any(|(other, bounds)| other != number && grown.meets(bounds))
+        };
+        (0..self.solids.len()).map(touches).collect()
+    }
+
+    /// The solid whose surface a primitive is, or [`NO_SOLID`].
+    #[inline(always)]
+    pub(crate) fn solid_of(&self, primitive: usize) -> u32 {
+        match self.surfaces.solid_of.get(primitive) {
+            Some(&solid) => solid,
+            None => self.solid_in_model(primitive),
+        }
+    }
+
+    fn solid_in_model(&self, primitive: usize) -> u32 {
+        let Some((placement, id)) = self.placement(primitive) else { return NO_SOLID };
+        match self.models[placement.model].solid_of.get(id) {
+            Some(&solid) if solid != NO_SOLID => placement.first_solid + solid,
+            _ => NO_SOLID,
+        }
+    }
+
+    /// Does a ray that crosses a primitive of this solid at `t` enter it?
+    pub(crate) fn enters(&self, primitive: usize, solid: u32, origin: Vec3, dir: Vec3, t: f64) -> bool {
+        if let Some(sphere) = self.spheres.get(primitive) {
+            // The near root is before the point that is nearest to the centre.
+            return t < (sphere.center - origin).dot(dir);
+        }
+        let [a, b, c] = self.corners(primitive);
+        ((b - a).cross(c - a).dot(dir) < 0.0) != self.solids[solid as usize].inward
+    }
+}
