@@ -128,7 +128,7 @@ impl Ways {
         }
         // A ray that has just entered a solid may leave it at once, at an edge, and by rounding a little before it starts.
         if index(self.before[ray]) as u32 != OUTSIDE {
-            packet.t_min[ray] = -world.clearance;
+            packet.t_min[ray] = -world.behind;
         }
     }
 

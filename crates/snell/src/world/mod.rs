@@ -73,6 +73,9 @@ pub struct World {
     pub(crate) background: Rgb,
     /// How far a computed hit may be off, in scene units: faces nearer to each other than this along a ray are in one place.
     pub(crate) clearance: f64,
+    /// How far behind its start a ray may still leave a solid: half of what the boxes of the tree are larger than what is in
+    /// them, so that no way down the tree can hide it.
+    pub(crate) behind: f64,
     /// Is no triangle smooth?
     all_flat: bool,
     /// The tree, with the triangles in its leaves and the trees of the models.
@@ -129,6 +132,7 @@ impl World {
             solids: Vec::new(),
             background: scene.background,
             clearance: 0.0,
+            behind: 0.0,
             all_flat: true,
             tree: Bvh::default(),
         };
@@ -405,6 +409,7 @@ impl World {
         }
         let (reach, farthest) = (everything.diagonal(), everything.farthest());
         self.clearance = MARGIN * (reach + farthest);
+        self.behind = 0.5 * MARGIN * reach;
         // In the space of a model rays come from everywhere that any of its instances sees.
         let mut seen: Vec<Bounds> = parts.models.iter().map(|m| Bounds::of(m.vertices.iter().copied())).collect();
         let mut instances = Vec::with_capacity(parts.placed.len());

@@ -158,10 +158,10 @@ impl Packet {
         Vec3::new(L::splat(columns[x][ray]), L::splat(columns[y][ray]), L::splat(columns[z][ray]))
     }
 
-    /// The largest distance that still counts for any of these rays.
+    /// The largest distance that still counts for any of these rays; at least 0, where boxes begin.
     #[inline(always)]
     pub(super) fn farthest<L: Lanes>(&self, rays: u64) -> f64 {
-        let none = L::splat(f64::NEG_INFINITY);
+        let none = L::splat(0.0);
         let mut farthest = none;
         for (start, mask) in groups::<L>(rays) {
             farthest = L::select(mask, L::load(&self.t[start..]), none).max(farthest);

@@ -77,7 +77,7 @@ impl Bvh {
             let walker = &mut walkers[walking[turn] & (WALKERS - 1)];
             let ray = walker.ray & 63;
             if walker.child.is_node() {
-                walker.open::<L>(&self.nodes[walker.child.number()], packet.t[ray]);
+                walker.open::<L>(&self.nodes[walker.child.number()], packet.t[ray].max(0.0));
             } else if self.test_alone::<L, ANY>(packet, ray, &walker.octant, walker.child.place()) {
                 hit |= 1 << ray;
                 if ANY {
@@ -85,7 +85,7 @@ impl Bvh {
                 }
             }
             // Hits found meanwhile may have closed boxes.
-            walker.child = walker.waiting.pop(packet.t[ray]);
+            walker.child = walker.waiting.pop(packet.t[ray].max(0.0));
             if walker.child != Child::NOTHING {
                 self.prefetch(walker.child);
             } else if let Some(ray) = next_ray() {
@@ -176,7 +176,7 @@ impl Walker {
         for axis in 0..3 {
             (self.origin[axis], self.inv_dir[axis]) = (packet.origin[axis][ray], packet.inv_dir[axis][ray]);
         }
-        // A box holds its primitives with more room than there is behind an origin.
+        // Boxes begin at 0: they hold what is hit a little behind an origin, too, and a hit there closes none of them.
         self.t_min = packet.t_min[ray].max(0.0);
         self.waiting.clear();
     }
