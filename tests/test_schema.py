@@ -7,7 +7,9 @@ from pathlib import Path
 
 import jsonschema
 import pytest
-from test_lecture import ROOT, SCENES, tomllib
+from test_lecture import ROOT, tomllib
+
+SCENES = sorted((ROOT / "scenes").glob("*/*.toml"))
 
 SCHEMA = json.loads((ROOT / "docs" / "scene.schema.json").read_text())
 VALIDATOR = jsonschema.Draft202012Validator(SCHEMA)

@@ -1,10 +1,10 @@
-//! The scenes that every Snell carries: all pictures of the lecture.
+//! The scenes that every Snell carries: all pictures of the lecture, and the gallery.
 
 use crate::report::{Report, Source, nearest};
 
 macro_rules! scenes {
     ($($name:literal),* $(,)?) => {
-        /// Names and texts, in the order of the lecture.
+        /// Names and texts, in the order of the lecture, then the gallery.
         pub const SCENES: &[(&str, &str)] =
             &[$(($name, include_str!(concat!("../../../scenes/", $name, ".toml")))),*];
     };
@@ -26,6 +26,8 @@ scenes![
     "lecture/diamond-depth-6",
     "lecture/wide",
     "lecture/quarter",
+    "gallery/ball",
+    "gallery/bubbles",
 ];
 
 /// The text of a built-in scene.

@@ -11,6 +11,7 @@ use snell::scene::{
 use snell::trace::{RayKind, RayTree};
 use snell::world::World;
 use snell_test_scenes::glass::{blocks, bubbles, cuboid, marbles};
+use snell_test_scenes::lecture;
 use std::sync::Arc;
 
 /// An empty white room, seen along −z.
@@ -409,4 +410,54 @@ fn a_camera_in_water_looks_out_through_one_face() {
     assert!((first.throughput.r - (1.0 - r)).abs() < 1e-3 && first.depth == 1);
     let whole = tree.sum() + tree.lost;
     assert!((whole.g - 1.0).abs() < 1e-12);
+}
+
+/// The objects that a pixel of a built-in scene shows, from the strongest refracted or direct contribution on.
+fn shown(name: &str, size: [u32; 2], pixel: [u32; 2]) -> (Vec<String>, RayTree) {
+    let mut scene = lecture(name, 1);
+    scene.render.size = size;
+    let world = World::new(&scene).unwrap();
+    let (_, tree) = trace_pixel(&world, pixel[0], pixel[1]).unwrap();
+    let mut nodes: Vec<_> = tree.nodes.iter().filter(|n| n.contribution.mean() > 0.0).collect();
+    nodes.sort_by(|a, b| b.contribution.mean().total_cmp(&a.contribution.mean()));
+    let name = |n: &&snell::trace::Node| {
+        n.hit.and_then(|(primitive, ..)| world.object_of(primitive)).map_or("sky".to_owned(), |o| o.name.clone())
+    };
+    (nodes.iter().map(name).collect(), tree)
+}
+
+/// Outside the ball the sky is above and the tiles are below; in it, the other way round, and left and right are swapped.
+#[test]
+fn in_the_ball_of_the_gallery_the_world_stands_on_its_head() {
+    let seen = |x: u32, y: u32| shown("gallery/ball", [384, 256], [x, y]).0[0].clone();
+    assert_eq!([seen(20, 40), seen(330, 60)], ["sky", "sky"]);
+    assert!([seen(20, 200), seen(330, 200)].iter().all(|s| s.ends_with("tiles")));
+    // In the ball, whose middle is at 192, 125.
+    assert!([seen(192, 72), seen(170, 80)].iter().all(|s| s.ends_with("tiles")));
+    assert_eq!([seen(172, 170), seen(212, 172)], ["sky", "sky"]);
+    // The orange post stands left of the ball and is seen in its right half.
+    let row = |from: u32, to: u32| (from..to).map(|x| seen(x, 128)).collect::<Vec<_>>();
+    let (left, right) = (row(130, 190), row(194, 254));
+    assert!(left.contains(&"green post".to_owned()) && !left.contains(&"orange post".to_owned()), "{left:?}");
+    assert!(right.contains(&"orange post".to_owned()) && !right.contains(&"green post".to_owned()), "{right:?}");
+    // The knobs are below their posts.
+    assert_eq!(seen(192, 158), "white knob");
+    assert_eq!(seen(192, 115), "white post");
+}
+
+/// At the rim of a bubble everything is reflected, and in its middle nearly nothing.
+#[test]
+fn bubbles_have_bright_rims() {
+    let at = |x: u32, y: u32| {
+        let (_, tree) = shown("gallery/bubbles", [640, 640], [x, y]);
+        // The first ray within the water, and what it becomes at the bubble.
+        let inside = tree.nodes.iter().position(|n| n.depth == 1 && n.kind == RayKind::Refracted).unwrap();
+        let of = |kind: RayKind| tree.nodes.iter().find(|n| n.parent == Some(inside) && n.kind == kind);
+        let mirrored = of(RayKind::Mirror).map_or(0.0, |n| n.throughput.g);
+        let refracted = of(RayKind::Refracted).map_or(0.0, |n| n.throughput.g);
+        mirrored / (mirrored + refracted)
+    };
+    // Bubble 1 has its middle near 302, 383 and a radius of 60 pixels.
+    assert!(at(302, 383) < 0.03, "{}", at(302, 383));
+    assert!([at(302, 328), at(249, 383), at(302, 438)].iter().any(|&share| share == 1.0));
 }

@@ -24,7 +24,8 @@ pub type Named = (String, Scene);
 
 /// The scenes of the golden hash: the lecture's, and the crowd in all models of light. Never to be added to.
 pub fn first_light() -> Vec<Named> {
-    let built_in = builtin::SCENES.iter().map(|(name, _)| ((*name).to_owned(), lecture(name, 40)));
+    let of_the_lecture = builtin::SCENES.iter().filter(|(name, _)| name.starts_with("lecture/"));
+    let built_in = of_the_lecture.map(|(name, _)| ((*name).to_owned(), lecture(name, 40)));
     let crowds = [Integrator::Lecture, Integrator::Course2018, Integrator::Course2020]
         .map(|i| (format!("crowd with {i:?}"), crowd(i)));
     built_in.chain(crowds).collect()
@@ -45,5 +46,6 @@ pub fn all() -> Vec<Named> {
     scenes.push(("hall of mirrors".to_owned(), hall_of_mirrors(5)));
     let glass = [("bubbles", glass::bubbles()), ("marbles", glass::marbles()), ("blocks", glass::blocks())];
     scenes.extend(glass.map(|(name, scene)| (format!("{name} of glass"), scene)));
+    scenes.extend(["gallery/ball", "gallery/bubbles"].map(|name| (name.to_owned(), lecture(name, 24))));
     scenes
 }
