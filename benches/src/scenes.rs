@@ -88,6 +88,7 @@ fn scene(max_depth: u32, camera: Camera, size: u32) -> Scene {
             size: [size, size],
             max_depth,
             min_throughput: snell::scene::MIN_THROUGHPUT,
+            bands: snell::scene::BANDS,
             shadows: Shadows::Opaque,
             transfer: Transfer::Srgb,
             rounding: Rounding::Round,

@@ -329,7 +329,7 @@ fn summary(
     if let Some(pixel) = stray.first_pixel {
         let width = u64::from(world.camera.size[0]);
         eprintln!(
-            "  {}: {} times a ray met the inside of a solid that it had not entered, first in pixel {},{}: does a mesh cross \
+            "  {}: {} rays lost count of the solids that they are in, first in pixel {},{}: does a mesh cross \
              itself? `snell check` shows where",
             WarningCode::StrayExit.code(),
             short(stray.count as f64),

@@ -28,6 +28,7 @@ scenes![
     "lecture/quarter",
     "gallery/ball",
     "gallery/bubbles",
+    "gallery/prism",
 ];
 
 /// The text of a built-in scene.

@@ -27,6 +27,7 @@ fn furnace(size: u32) -> Scene {
             size: [size, size],
             max_depth: 32,
             min_throughput: 1.0 / 4096.0,
+            bands: snell::scene::BANDS,
             shadows: Shadows::Opaque,
             transfer: Transfer::Linear,
             rounding: Rounding::Round,
@@ -167,7 +168,7 @@ fn a_scene_scaled_or_moved_is_the_same_picture() {
     scene.meshes.retain(|mesh| mesh.instances.is_empty());
     // From where no ray runs along the planes in which faces meet.
     scene.camera.eye = [53.1, 57.3, 99.7];
-    scene.render.size = [48, 48];
+    scene.render.size = [96, 96];
     let expected = picture(&scene);
     for (which, (factor, offset)) in [(1e6, 0.0), (1e-6, 0.0), (1.0, 1e5)].into_iter().enumerate() {
         let found = picture(&scaled(&scene, |c| c * factor + offset, factor));
@@ -459,5 +460,159 @@ fn bubbles_have_bright_rims() {
     };
     // Bubble 1 has its middle near 302, 383 and a radius of 60 pixels.
     assert!(at(302, 383) < 0.03, "{}", at(302, 383));
-    assert!([at(302, 328), at(249, 383), at(302, 438)].iter().any(|&share| share == 1.0));
+    assert!([at(302, 328), at(249, 383), at(302, 438)].contains(&1.0));
+}
+
+/// Without dispersion nothing splits: the same bits. With next to none, the same picture.
+#[test]
+fn dispersion_that_goes_to_nothing_leaves_no_trace() {
+    let mut scene = furnace(24);
+    scene.background = Rgb::new(0.2, 0.5, 0.9);
+    glass(&mut scene, "glass", 1.5, 0);
+    ball(&mut scene, [0.0; 3], 1.5, "glass");
+    mesh(&mut scene, cuboid([-2.0, -1.0, 1.0], [0.5, 1.0, 2.0]), "glass");
+    let plain = picture(&scene);
+    let glass = scene.materials["glass"].clone();
+    scene.materials["glass"] = Material { eta: 1.0, cauchy: Some([1.5, 0.0, 0.0]), ..glass.clone() };
+    assert!(picture(&scene).pixels == plain.pixels);
+    scene.materials["glass"] = Material { abbe: Some(1e13), ..glass.clone() };
+    // Branches end at other places when they are split.
+    scene.render.min_throughput = 0.0;
+    scene.render.max_depth = 7;
+    let faint = picture(&scene);
+    scene.materials["glass"] = glass;
+    let none = picture(&scene);
+    for (a, b) in faint.pixels.iter().zip(&none.pixels) {
+        assert!((*a - *b).to_array().iter().all(|d| d.abs() < 1e-9), "{a:?} {b:?}");
+    }
+}
+
+#[test]
+fn a_white_furnace_stays_white_with_dispersion() {
+    let mut scene = furnace(12);
+    scene.render.max_depth = 8;
+    scene.render.bands = 7;
+    scene.materials.insert(
+        "flint".to_owned(),
+        Material { ko: Rgb::gray(0.0), glass: Some("N-SF11".to_owned()), ..Material::default() },
+    );
+    ball(&mut scene, [0.0; 3], 1.5, "flint");
+    ball(&mut scene, [1.0, 0.5, 1.0], 0.8, "flint");
+    let world = World::new(&scene).unwrap();
+    for pixel in 0..144 {
+        let (_, tree) = trace_pixel(&world, pixel % 12, pixel / 12).unwrap();
+        let whole = tree.sum() + tree.lost;
+        // As without dispersion; the weights of the bands add up to one exactly.
+        assert!(whole.to_array().iter().all(|c| (c - 1.0).abs() < 1e-12), "{whole:?} at {pixel}");
+    }
+}
+
+/// Red is bent least, violet most.
+#[test]
+fn the_prism_of_the_gallery_shows_the_colours_in_order() {
+    let mut scene = lecture("gallery/prism", 1);
+    scene.render.size = [320, 240];
+    let world = World::new(&scene).unwrap();
+    let crop = Some(snell::film::Crop { x: 90, y: 90, width: 80, height: 1 });
+    let row = render(&world, &Options { crop, ..Options::default() }).unwrap().film.pixels;
+    let peak =
+        |value: fn(&Rgb) -> f64| (0..row.len()).max_by(|&a, &b| value(&row[a]).total_cmp(&value(&row[b]))).unwrap();
+    let (red, green, blue) = (peak(|c| c.r - c.g - c.b), peak(|c| c.g - c.r - c.b), peak(|c| c.b - c.r - c.g));
+    assert!(blue + 5 < green && green + 5 < red, "{blue} {green} {red}");
+    let violet = row[..blue].iter().filter(|c| c.b > c.r && c.r > c.g && c.b > 0.3).count();
+    assert!(violet > 3, "beyond blue there is violet");
+}
+
+/// An opaque surface in the same place as glass is seen, whichever stands first in the scene.
+#[test]
+fn glass_on_something_opaque_shows_it() {
+    let mut scene = furnace(8);
+    scene.ambient = Rgb::gray(1.0);
+    scene.background = Rgb::gray(0.0);
+    glass(&mut scene, "glass", 1.5, 0);
+    scene.materials.insert("red".to_owned(), Material { ka: Rgb::new(1.0, 0.0, 0.0), ..Material::default() });
+    for order in [["glass", "red"], ["red", "glass"]] {
+        scene.spheres.clear();
+        scene.meshes.clear();
+        for material in order {
+            ball(&mut scene, [0.0; 3], 1.5, material);
+        }
+        let middle = picture(&scene).pixels[8 * 4 + 4];
+        assert_eq!(middle, Rgb::new(1.0, 0.0, 0.0), "{order:?}");
+        scene.spheres.clear();
+        for material in order {
+            let bottom = if material == "glass" { [-1.0, 0.0] } else { [-3.0, -1.0] };
+            mesh(&mut scene, cuboid([-1.5, -1.5, bottom[0]], [1.5, 1.5, bottom[1]]), material);
+        }
+        let middle = picture(&scene).pixels[8 * 4 + 4];
+        // Through one face, and what comes back from it.
+        assert!(middle.r > 0.95 && middle.r < 1.0 && middle.g == 0.0, "{order:?}: {middle:?}");
+    }
+}
+
+#[test]
+fn nothing_at_all_is_the_background() {
+    let mut scene = furnace(4);
+    scene.background = Rgb::new(0.1, 0.2, 0.3);
+    assert!(picture(&scene).pixels.iter().all(|&c| c == scene.background));
+    // A face without area is nothing.
+    let vertices = [Vec3::default(); 3].to_vec();
+    scene.materials.insert("m".to_owned(), Material::default());
+    mesh(&mut scene, TriangleMesh { vertices, faces: vec![[0, 1, 2]], ..TriangleMesh::default() }, "m");
+    assert!(picture(&scene).pixels.iter().all(|&c| c == scene.background));
+}
+
+/// The wall of an opaque sphere is lit by a light within it, and not by one behind it.
+#[test]
+fn an_opaque_sphere_has_an_inside() {
+    for shadows in [Shadows::Opaque, Shadows::Tinted] {
+        let mut scene = furnace(4);
+        scene.render.shadows = shadows;
+        scene.materials.insert("white".to_owned(), Material { kd: Rgb::gray(1.0), ..Material::default() });
+        ball(&mut scene, [0.0; 3], 100.0, "white");
+        let mut light = lecture("lecture/default", 1).lights[0].clone();
+        for (position, lit) in [([0.0, 0.0, 20.0], true), ([0.0, 0.0, -200.0], false)] {
+            light.position = Some(position);
+            scene.lights = vec![light.clone()];
+            assert!(picture(&scene).pixels.iter().all(|c| (c.r > 0.5) == lit && (lit || c.r == 0.0)), "{shadows:?}");
+        }
+    }
+}
+
+/// A hollow box turned inside out by a mirror, or by its file, is still hollow.
+#[test]
+fn a_mirrored_hollow_box_is_hollow() {
+    let mut hollow = cuboid([-2.0; 3], [2.0; 3]);
+    let inner = cuboid([-1.0; 3], [1.0; 3]);
+    hollow.faces.extend(inner.faces.iter().map(|&[a, b, c]| [a + 8, c + 8, b + 8]));
+    hollow.vertices.extend(inner.vertices);
+    let mirror = vec![snell::scene::Transform::Scale([-1.0, 1.0, 1.0])];
+    for (transform, instances) in [(vec![], vec![]), (mirror.clone(), vec![]), (vec![], vec![mirror])] {
+        let mut scene = furnace(1);
+        glass(&mut scene, "glass", 1.5, 0);
+        mesh(&mut scene, hollow.clone(), "glass");
+        (scene.meshes[0].transform, scene.meshes[0].instances) = (transform, instances);
+        let (_, dir, count) = straight_through(&tree(&scene, [0.1, 0.2, 5.0], [0.0, 0.0, -1.0]));
+        assert_eq!((count, dir), (4, Vec3::new(0.0, 0.0, -1.0)));
+    }
+}
+
+/// A gel has the index of what is around it, and is seen all the same, by rays and by light.
+#[test]
+fn a_gel_dyes_what_goes_through() {
+    let mut scene = furnace(1);
+    let gel = Material { ko: Rgb::gray(0.0), kd: Rgb::new(0.9, 0.4, 0.1), dyed: true, ..Material::default() };
+    scene.materials.insert("gel".to_owned(), gel.clone());
+    mesh(&mut scene, cuboid([-1.0; 3], [1.0; 3]), "gel");
+    assert_eq!(tree(&scene, [0.1, 0.2, 5.0], [0.0, 0.0, -1.0]).sum(), gel.kd);
+    // The light falls through it onto a floor.
+    scene.background = Rgb::gray(0.0);
+    scene.render.shadows = Shadows::Tinted;
+    scene.materials.insert("floor".to_owned(), Material { kd: Rgb::gray(1.0), ..Material::default() });
+    mesh(&mut scene, cuboid([-9.0, -3.0, -9.0], [9.0, -2.0, 9.0]), "floor");
+    let mut light = lecture("lecture/default", 1).lights[0].clone();
+    (light.position, light.direction, light.color) = (None, Some([0.0, 1.0, 0.0]), Rgb::gray(1.0));
+    scene.lights = vec![light];
+    let floor = tree(&scene, [0.3, -1.5, 0.2], [0.0, -1.0, 0.0]).sum();
+    assert_eq!(floor, gel.kd);
 }

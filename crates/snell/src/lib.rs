@@ -25,6 +25,7 @@
 //!         size: [32, 32],
 //!         max_depth: 6,
 //!         min_throughput: snell::scene::MIN_THROUGHPUT,
+//!         bands: snell::scene::BANDS,
 //!         shadows: Shadows::Opaque,
 //!         transfer: Transfer::Linear,
 //!         rounding: Rounding::Round,

@@ -209,6 +209,7 @@ mod tests {
                 size: [1, 1],
                 max_depth: 0,
                 min_throughput: crate::scene::MIN_THROUGHPUT,
+                bands: crate::scene::BANDS,
                 shadows: Shadows::Off,
                 transfer: Transfer::Linear,
                 rounding: Rounding::Round,

@@ -10,7 +10,9 @@ use std::sync::Arc;
 fn stage_of_glass() -> Scene {
     let mut scene = stage(Integrator::Whitted);
     scene.background = Rgb::new(0.2, 0.3, 0.4);
-    scene.render.max_depth = 12;
+    scene.render.max_depth = 8;
+    scene.render.bands = 3;
+    scene.render.min_throughput = 0.001;
     scene.render.shadows = Shadows::Tinted;
     let clear = Material { ko: Rgb::gray(0.0), ..Material::default() };
     let green = Some(Rgb::new(0.5, 0.9, 0.6));
@@ -19,20 +21,21 @@ fn stage_of_glass() -> Scene {
         ("water", Material { eta: 1.33, priority: 1, sigma_a: Some(Rgb::new(0.05, 0.01, 0.0)), ..clear.clone() }),
         ("flint", Material { eta: 1.8, attenuation_color: green, attenuation_distance: Some(8.0), ..clear.clone() }),
         ("milk", Material { eta: 1.4, ko: Rgb::gray(0.4), kd: Rgb::new(0.9, 0.8, 0.7), dyed: true, ..clear.clone() }),
-        ("nothing", clear),
+        ("nothing", clear.clone()),
+        ("prism", Material { glass: Some("SF11".to_owned()), ..clear }),
         ("lamp", Material { emission: Rgb::new(0.9, 0.8, 0.5), ..Material::default() }),
     ];
     scene.materials.extend(glasses.map(|(name, material)| (name.to_owned(), material)));
     scene
 }
 
-const GLASSES: [&str; 5] = ["crown", "water", "flint", "milk", "nothing"];
+const GLASSES: [&str; 6] = ["crown", "water", "flint", "milk", "nothing", "prism"];
 
 /// Spheres of all glasses in and through each other, and the camera within two of them.
 pub fn bubbles() -> Scene {
     let (mut scene, mut numbers) = (stage_of_glass(), Numbers(31));
     for i in 0..60 {
-        let name = if i % 7 == 6 { "red" } else { GLASSES[i % 5] };
+        let name = if i % 7 == 6 { "red" } else { GLASSES[i % 6] };
         scene.spheres.push(sphere(numbers.point(60.0), 2.0 + 6.0 * numbers.next(), name));
     }
     // One in the other, sharing a point of their surfaces, or all of it.
@@ -47,9 +50,10 @@ pub fn bubbles() -> Scene {
     scene
 }
 
-/// A few spheres, for which no tree is asked.
+/// A few spheres, for whose shadows no tree is asked.
 pub fn marbles() -> Scene {
     let mut scene = stage_of_glass();
+    scene.render.shadows = Shadows::Opaque;
     for (i, glass) in GLASSES.into_iter().enumerate() {
         scene.spheres.push(sphere([36.0 + 7.0 * i as f64, 45.0 + 3.0 * i as f64, 60.0], 5.0, glass));
     }

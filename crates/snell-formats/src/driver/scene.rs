@@ -400,6 +400,7 @@ impl Reader {
                 size: values.size.ok_or_else(|| missing("res"))?,
                 max_depth: values.depth,
                 min_throughput: snell::scene::MIN_THROUGHPUT,
+                bands: snell::scene::BANDS,
                 shadows: Shadows::Opaque,
                 transfer: Transfer::Linear,
                 rounding: dialect.rounding(),

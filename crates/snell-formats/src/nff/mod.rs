@@ -334,6 +334,7 @@ impl<'a, W: Iterator<Item = Word<'a>>> Reader<'a, W> {
                 size,
                 max_depth: MAX_DEPTH,
                 min_throughput: snell::scene::MIN_THROUGHPUT,
+                bands: snell::scene::BANDS,
                 shadows: Shadows::Opaque,
                 transfer: Transfer::default(),
                 rounding: Rounding::default(),

@@ -3,6 +3,8 @@
 use super::one;
 use crate::film::Rgb;
 use crate::optics::absorption;
+use crate::optics::dispersion::{Dispersion, Formula, VISIBLE_NM};
+use crate::optics::glass::{self, UnknownGlass};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -25,6 +27,15 @@ pub struct Material {
     /// Index of refraction.
     #[serde(default = "one")]
     pub eta: f64,
+    /// Name of a glass of the catalogue, instead of `eta`: its index at the d line, and with `whitted` its colours.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub glass: Option<String>,
+    /// `whitted`: the Abbe number of the glass whose index at the d line (587.56 nm) is `eta`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub abbe: Option<f64>,
+    /// `whitted`: Cauchy's A, B and C instead of `eta`: the index at λ µm is A + B/λ² + C/λ⁴.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cauchy: Option<[f64; 3]>,
     /// `whitted`: light that the surface sends out by itself.
     #[serde(skip_serializing_if = "is_default")]
     pub emission: Rgb,
@@ -60,6 +71,9 @@ impl Default for Material {
             ko: Rgb::gray(1.0),
             spow: 16.0,
             eta: 1.0,
+            glass: None,
+            abbe: None,
+            cauchy: None,
             emission: none,
             attenuation_color: None,
             attenuation_distance: None,
@@ -74,6 +88,19 @@ impl Material {
     /// Does light go through it? `Σko < 3`, as in the lecture.
     pub fn is_transparent(&self) -> bool {
         self.ko.to_array().iter().sum::<f64>() < 3.0
+    }
+
+    /// How the index depends on the wavelength.
+    ///
+    /// # Errors
+    /// An unknown glass, with the names that are most like it.
+    pub fn dispersion(&self) -> Result<Dispersion, UnknownGlass> {
+        Ok(match (&self.glass, self.cauchy, self.abbe) {
+            (Some(name), ..) => glass::find(name)?.dispersion.clone(),
+            (None, Some(cauchy), _) => Dispersion { formula: Formula::Cauchy(cauchy), range_nm: VISIBLE_NM },
+            (None, None, Some(abbe)) => Dispersion::abbe(self.eta, abbe),
+            (None, None, None) => Dispersion::constant(self.eta),
+        })
     }
 
     /// Absorption per scene unit, from whichever of the two forms is given.

@@ -15,9 +15,9 @@ mod warning;
 pub use camera::Camera;
 pub use light::Light;
 pub use material::Material;
-pub use render::{Integrator, MIN_THROUGHPUT, Render, Shadows};
+pub use render::{BANDS, Integrator, MIN_THROUGHPUT, Render, Shadows};
 pub use shape::{Mesh, OpenMesh, Sphere, Transform};
-pub use validate::{LARGEST_NUMBER, MAX_DEPTH, Problem, Step, validate};
+pub use validate::{LARGEST_NUMBER, MAX_BANDS, MAX_DEPTH, Problem, Step, validate};
 pub use warning::{Warning, WarningCode};
 
 pub use crate::film::transfer::{Rounding, Transfer};

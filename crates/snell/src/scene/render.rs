@@ -18,6 +18,9 @@ pub struct Render {
     /// `whitted`: branches that carry less than this are not followed, and counted as lost light.
     #[serde(default = "default_throughput", skip_serializing_if = "is_default_throughput")]
     pub min_throughput: f64,
+    /// `whitted`: into how many wavelengths a ray splits at its first dispersive face; 1 for no colours.
+    #[serde(default = "default_bands", skip_serializing_if = "is_default_bands")]
+    pub bands: u32,
     /// What stands between a surface and a light.
     #[serde(default)]
     pub shadows: Shadows,
@@ -58,6 +61,18 @@ pub enum Shadows {
 
 /// The default of [`Render::min_throughput`].
 pub const MIN_THROUGHPUT: f64 = 1.0 / 4096.0;
+
+/// The default of [`Render::bands`].
+pub const BANDS: u32 = 16;
+
+fn default_bands() -> u32 {
+    BANDS
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "the signature that serde asks for")]
+fn is_default_bands(value: &u32) -> bool {
+    *value == BANDS
+}
 
 fn default_depth() -> u32 {
     32

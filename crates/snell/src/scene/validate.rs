@@ -3,6 +3,8 @@
 use super::{Integrator, Material, Scene, Shadows, Transform, Warning, WarningCode};
 use crate::film::Rgb;
 use crate::geometry::Vec3;
+use crate::optics::dispersion::LINE_D_NM;
+use crate::optics::spectrum;
 use std::fmt;
 
 /// Numbers beyond this are refused: their squares must fit into the `f32` boxes of the tree.
@@ -10,6 +12,9 @@ pub const LARGEST_NUMBER: f64 = 1e15;
 
 /// The deepest recursion that is accepted.
 pub const MAX_DEPTH: u32 = 1000;
+
+/// More bands than this are refused: each is a ray at every split.
+pub const MAX_BANDS: u32 = 64;
 
 /// One step on the way to a value in a scene: `sphere`, `2`, `radius`.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -122,6 +127,7 @@ pub fn validate(scene: &Scene) -> Result<Vec<Warning>, Vec<Problem>> {
     materials(scene, &mut found);
     spheres(scene, &mut found);
     meshes(scene, &mut found);
+    indices(scene, &mut found);
     only_whitted(scene, &mut found);
     if found.problems.is_empty() { Ok(found.warnings) } else { Err(found.problems) }
 }
@@ -140,6 +146,10 @@ fn settings(scene: &Scene, found: &mut Findings) {
     if width == 0 || height == 0 {
         let message = format!("a picture of {width} x {height} pixels has none");
         found.problem(place!["render", "size"], message, "both must be at least 1, like [512, 512]");
+    }
+    if !(1..=MAX_BANDS).contains(&scene.render.bands) {
+        let message = format!("expected 1 to {MAX_BANDS} bands, read {}", scene.render.bands);
+        found.problem(place!["render", "bands"], message, "16 is enough for most pictures; 1 is no dispersion");
     }
     if scene.render.max_depth > MAX_DEPTH {
         let message = format!("max_depth {} is above {MAX_DEPTH}", scene.render.max_depth);
@@ -222,7 +232,45 @@ fn materials(scene: &Scene, found: &mut Findings) {
         found.not_negative(at("spow"), m.spow, "an exponent");
         found.color(&at("emission"), m.emission);
         absorption(found, &at, m);
+        dispersion(scene, found, &at, m);
         found.positive(at("eta"), m.eta, "an index of refraction", "glass is about 1.5, water 1.33");
+    }
+}
+
+fn dispersion(scene: &Scene, found: &mut Findings, at: &impl Fn(&str) -> Vec<Step>, m: &Material) {
+    let given = [("glass", m.glass.is_some()), ("abbe", m.abbe.is_some()), ("cauchy", m.cauchy.is_some())];
+    let mut given = given.into_iter().filter(|(_, given)| *given).map(|(key, _)| key);
+    let Some(key) = given.next() else { return };
+    if let Some(other) = given.next() {
+        found.problem(
+            at(other),
+            format!("dispersion is given twice: by `{key}` and by `{other}`"),
+            "remove one of them",
+        );
+        return;
+    }
+    if key != "abbe" && m.eta != 1.0 {
+        let message = format!("the index is given twice: by `{key}` and by `eta`");
+        found.problem(at("eta"), message, "remove one of them");
+    }
+    if m.abbe.is_some_and(|abbe| !found.number(at("abbe"), abbe) || abbe <= 0.0) {
+        found.problem(at("abbe"), "an Abbe number must be above 0", "crown glass has about 60, flint about 30");
+        return;
+    }
+    if m.cauchy.is_some_and(|cauchy| !found.numbers(&at("cauchy"), &cauchy)) {
+        return;
+    }
+    let dispersion = match m.dispersion() {
+        Ok(dispersion) => dispersion,
+        Err(unknown) => return found.problem(at("glass"), unknown.to_string(), "docs/glasses.md lists them all"),
+    };
+    let bands = if scene.render.integrator == Integrator::Whitted { scene.render.bands } else { 1 };
+    if (1..=MAX_BANDS).contains(&bands) {
+        let mut wavelengths =
+            spectrum::bands(bands as usize).into_iter().map(|band| band.wavelength_nm).chain([LINE_D_NM]);
+        if let Some(error) = wavelengths.find_map(|nm| dispersion.eta(nm).err()) {
+            found.problem(at(key), format!("{error}; pictures need it from 380 to 780 nm"), "give the index by `eta`");
+        }
     }
 }
 
@@ -256,6 +304,22 @@ fn absorption(found: &mut Findings, at: &impl Fn(&str) -> Vec<Step>, m: &Materia
     }
 }
 
+/// Real optics squares indices, and nothing known is beyond these.
+const INDICES: std::ops::RangeInclusive<f64> = 1e-3..=1e3;
+
+fn indices(scene: &Scene, found: &mut Findings) {
+    if scene.render.integrator != Integrator::Whitted {
+        return;
+    }
+    let outside = (place!["eta_outside"], scene.eta_outside);
+    let materials = scene.materials.iter().map(|(name, m)| (place!["material", name.as_str(), "eta"], m.eta));
+    for (place, eta) in materials.chain([outside]) {
+        if eta > 0.0 && !INDICES.contains(&eta) {
+            found.problem(place, format!("expected an index of refraction from 0.001 to 1000, read {eta}"), "");
+        }
+    }
+}
+
 /// What the lecture's models would silently leave out.
 fn only_whitted(scene: &Scene, found: &mut Findings) {
     if scene.render.integrator == Integrator::Whitted {
@@ -268,6 +332,7 @@ fn only_whitted(scene: &Scene, found: &mut Findings) {
         }
     };
     unused(place!["background"], scene.background != Rgb::gray(0.0));
+    unused(place!["render", "bands"], scene.render.bands != super::BANDS);
     unused(place!["render", "min_throughput"], scene.render.min_throughput != super::MIN_THROUGHPUT);
     for (name, m) in &scene.materials {
         let at = |key: &str| place!["material", name.as_str(), key];
@@ -276,6 +341,7 @@ fn only_whitted(scene: &Scene, found: &mut Findings) {
         unused(at("sigma_a"), m.sigma_a.is_some());
         unused(at("priority"), m.priority != 0);
         unused(at("dyed"), m.dyed);
+        unused(at("abbe"), m.abbe.is_some());
     }
     if scene.render.shadows == Shadows::Tinted {
         let message = "shadows `tinted` need the integrator `whitted`";

@@ -1,7 +1,7 @@
 //! The first generation: the camera rays of a tile. They are made where they are needed, and never stored.
 
 use super::lecture::T_MIN;
-use super::media::{Media, OUTSIDE};
+use super::media::{Media, OUTSIDE, WHITE};
 use super::queue::{Generation, Load, Weight};
 use crate::film::{Crop, Rgb};
 use crate::geometry::{Sphere, Vec3, sphere};
@@ -131,6 +131,7 @@ impl Generation for CameraRays<'_> {
             parent: L::splat(0.0),
             pixel: L::ramp(start),
             medium: self.media.lanes(0, start),
+            band: L::splat(f64::from(WHITE)),
         }
     }
 

@@ -20,8 +20,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 const GENERATION_BUDGET: usize = 1 << 16;
 
 /// A pixel with more rays than this gets no more; the rest counts as lost light. It bounds the time that a pixel takes, and
-/// what its generation takes of memory: a ray has 16 numbers of 8 bytes, and twice as many children may be made before they
-/// are counted, in columns of a power of two: 134 MB a queue at most.
+/// what its generation takes of memory: a ray has 18 numbers of 8 bytes, and more children may be made before they are
+/// counted, twice as many, or one for each band of light.
 const RAYS_PER_PIXEL: u32 = 1 << 18;
 
 /// Sees every generation when it is done, with its rays, hits and contributions.
@@ -51,6 +51,8 @@ pub(crate) struct Tracer<'a, L, O> {
     hits: Hits,
     shadow: ShadowRays,
     refracted: RayQueue,
+    /// Refracted rays of white ones that have split, by bands; none where nothing disperses.
+    bands: Vec<RayQueue>,
     /// Generations that wait: the depth and the rays.
     waiting: Vec<(u32, RayQueue)>,
     /// Queues that wait to be used again.
@@ -60,6 +62,8 @@ pub(crate) struct Tracer<'a, L, O> {
     radiance: Vec<Rgb>,
     rays_of: Vec<u32>,
     pub lost: Vec<Rgb>,
+    /// The same without signs, which colours of single wavelengths have, and as the mean of the three channels.
+    lost_sizes: Vec<f64>,
     lanes: std::marker::PhantomData<L>,
 }
 
@@ -77,12 +81,18 @@ impl<'a, L: Lanes, O: Observer> Tracer<'a, L, O> {
             hits: Hits::default(),
             shadow: ShadowRays::default(),
             refracted: RayQueue::default(),
+            bands: if world.spectra.is_empty() {
+                vec![]
+            } else {
+                world.bands.iter().map(|_| RayQueue::default()).collect()
+            },
             waiting: Vec::new(),
             spare: Vec::new(),
             tile: Crop { x: 0, y: 0, width: 1, height: 1 },
             radiance: Vec::new(),
             rays_of: Vec::new(),
             lost: Vec::new(),
+            lost_sizes: Vec::new(),
             lanes: std::marker::PhantomData,
         }
     }
@@ -92,6 +102,7 @@ impl<'a, L: Lanes, O: Observer> Tracer<'a, L, O> {
     pub fn trace(&mut self, tile: &Crop) -> Option<&[Rgb]> {
         let mut camera_rays = self.camera_rays.take().unwrap_or_else(|| CameraRays::new(self.world));
         self.tile = *tile;
+        self.media.forget();
         camera_rays.aim(tile, &mut self.media);
         let count = camera_rays.len();
         self.radiance.clear();
@@ -100,6 +111,8 @@ impl<'a, L: Lanes, O: Observer> Tracer<'a, L, O> {
         self.rays_of.resize(count, 1);
         self.lost.clear();
         self.lost.resize(count, Rgb::black());
+        self.lost_sizes.clear();
+        self.lost_sizes.resize(count, 0.0);
 
         let children = self.generation(0, &camera_rays);
         self.camera_rays = Some(camera_rays);
@@ -173,6 +186,7 @@ impl<'a, L: Lanes, O: Observer> Tracer<'a, L, O> {
         self.statistics.rays.shadow += shadow_rays as u64;
         let mut children = self.empty_queue();
         self.refracted.clear();
+        self.bands.iter_mut().for_each(RayQueue::clear);
         for start in (0..self.hits.len()).step_by(L::WIDTH) {
             let batch = self.hits.batch::<L>(self.world, start);
             let (contribution, mirror, refracted) = match blend {
@@ -181,13 +195,16 @@ impl<'a, L: Lanes, O: Observer> Tracer<'a, L, O> {
                     lecture::mirror_ray(blend, &batch),
                     lecture::exit_ray(blend, &batch),
                 ),
-                None => whitted::answer(&batch, &self.media),
+                None => whitted::answer(&batch, &self.media, &mut self.bands),
             };
             children.push(RayKind::Mirror, mirror.0, &mirror.1);
             self.refracted.push(RayKind::Refracted, refracted.0, &refracted.1);
             self.hits.set_contribution(start, contribution);
         }
         children.append(&self.refracted);
+        for band in &self.bands {
+            children.append(band);
+        }
         for row in 0..self.hits.len() {
             let pixel = &mut self.radiance[self.hits.pixel(row)];
             *pixel = *pixel + self.hits.contribution(row);
@@ -214,7 +231,8 @@ impl<'a, L: Lanes, O: Observer> Tracer<'a, L, O> {
             let throughput = Rgb::new(r.abs(), g.abs(), b.abs());
             let too_little = throughput.r.max(throughput.g).max(throughput.b) < least;
             if too_deep || too_little || planned[pixel] >= RAYS_PER_PIXEL {
-                self.lost[pixel] = self.lost[pixel] + throughput;
+                self.lost[pixel] = self.lost[pixel] + Rgb::new(r, g, b);
+                self.lost_sizes[pixel] += throughput.mean();
                 self.statistics.lost.rays += 1;
             } else {
                 planned[pixel] += 1;
@@ -226,8 +244,10 @@ impl<'a, L: Lanes, O: Observer> Tracer<'a, L, O> {
     }
 
     fn count_lost_light(&mut self) {
-        for (pixel, lost) in self.lost.iter().map(|lost| lost.mean()).enumerate().filter(|(_, lost)| *lost > 0.0) {
-            self.statistics.lost.add(self.number_of(pixel), lost);
+        for pixel in 0..self.lost_sizes.len() {
+            if self.lost_sizes[pixel] > 0.0 {
+                self.statistics.lost.add(self.number_of(pixel), self.lost_sizes[pixel]);
+            }
         }
     }
 

@@ -6,7 +6,7 @@ use crate::geometry::Vec3;
 use crate::geometry::bvh::{Few, Nearest, PACKET, Packet};
 use crate::lanes::{Columns, Lanes, MAX_WIDTH, Mask, index};
 use crate::scene::{Integrator, Material};
-use crate::world::World;
+use crate::world::{Side, World};
 
 /// Columns of the hits as they are found.
 const RAY: usize = 0;
@@ -16,9 +16,10 @@ const T: usize = 3;
 const POINT: usize = 4;
 const WO: usize = 7;
 const ATTENUATION: usize = 10;
+/// Handles of the solids before and behind the face, and whether it is met from outside.
 const BEFORE: usize = 16;
 const AFTER: usize = 17;
-const OUTER: usize = 18;
+const BAND: usize = 19;
 
 /// In the column of primitives: nothing is there, only the background.
 pub(super) const SKY: f64 = -1.0;
@@ -32,7 +33,7 @@ const CONTRIBUTION: usize = 7;
 /// The hits of a generation, compacted, in the order of their rays.
 #[derive(Debug, Default)]
 pub(crate) struct Hits {
-    found: Columns<19>,
+    found: Columns<20>,
     surface: Columns<10>,
     /// Geometric normals, where they are not those of the surface.
     geometric: Columns<3>,
@@ -108,7 +109,7 @@ impl Hits {
             hit,
             [
                 row, pixel, primitive, t, p.x, p.y, p.z, wo.x, wo.y, wo.z, a.r, a.g, a.b, f.r, f.g, f.b, before, after,
-                outer,
+                outer, load.band,
             ],
         );
     }
@@ -129,8 +130,18 @@ impl Hits {
             let [x, y, z] = self.found.group(POINT, start);
             let [wx, wy, wz] = self.found.group(WO, start);
             let (point, dir) = (Vec3::new(x, y, z), -Vec3::new(wx, wy, wz));
-            let within = self.found.lanes::<L>(OUTER, start).eq(L::splat(0.0));
-            let [normal, geometric] = world.facing_normals::<L>(&primitives, point, dir, within);
+            let [before, after, outer] = self.found.group::<L, 3>(BEFORE, start);
+            let side = Side {
+                within: outer.eq(L::splat(0.0)),
+                either: if real_optics { before.eq(after) } else { L::Mask::from_bits(0) },
+            };
+            let sky = self.found.lanes::<L>(PRIMITIVE, start).eq(L::splat(SKY));
+            let nothing = Vec3::new(wx, wy, wz);
+            let [normal, geometric] = if (!sky & L::Mask::first(self.len() - start)).any() {
+                world.facing_normals::<L>(&primitives, point, dir, &side)
+            } else {
+                [nothing, nothing]
+            };
             let (normal, active) = (normal.unit(), L::Mask::first(self.len() - start));
             let zero = L::splat(0.0);
             let row = [normal.x, normal.y, normal.z, L::load(&materials), zero, zero, zero, zero, zero, zero];
@@ -285,10 +296,15 @@ impl<L: Lanes> Batch<'_, L> {
         Face { before, after, outer }
     }
 
-    /// The handles of the solids before and behind the face of one hit.
-    pub fn media_of(&self, lane: usize) -> [u32; 2] {
+    /// The handles of the solids before and behind the face of one hit, and the band of the ray.
+    pub fn media_of(&self, lane: usize) -> [u32; 3] {
         let row = (self.start + lane).min(self.hits.len() - 1);
-        [BEFORE, AFTER].map(|column| index(self.hits.found.at(column, row)) as u32)
+        [BEFORE, AFTER, BAND].map(|column| index(self.hits.found.at(column, row)) as u32)
+    }
+
+    #[inline(always)]
+    pub fn band(&self) -> L {
+        self.hits.found.lanes(BAND, self.start)
     }
 
     #[inline(always)]

@@ -11,6 +11,7 @@ use super::media::{Media, OUTSIDE};
 use super::queue::Generation;
 use super::statistics::StrayExits;
 use crate::film::Rgb;
+use crate::geometry::Vec3;
 use crate::geometry::bvh::{PACKET, Packet};
 use crate::lanes::{Lanes, Mask, index};
 use crate::optics::absorption::transmittance_rgb;
@@ -24,6 +25,7 @@ pub(crate) struct Ways {
     after: [f64; PACKET],
     /// 1 where it meets the face from outside.
     outer: [f64; PACKET],
+    band: [f64; PACKET],
     /// From where on the medium has been the same, and what the media before have let through.
     since: [f64; PACKET],
     kept: [[f64; PACKET]; 3],
@@ -33,7 +35,15 @@ pub(crate) struct Ways {
 impl Default for Ways {
     fn default() -> Self {
         let zero = [0.0; PACKET];
-        Self { before: zero, after: zero, outer: zero, since: zero, kept: [[1.0; PACKET]; 3], crossings: Vec::new() }
+        Self {
+            before: zero,
+            after: zero,
+            outer: zero,
+            band: zero,
+            since: zero,
+            kept: [[1.0; PACKET]; 3],
+            crossings: Vec::new(),
+        }
     }
 }
 
@@ -43,6 +53,18 @@ enum Met {
     Face,
     /// Nothing that it would notice up to this distance.
     Nothing(f64),
+}
+
+/// Where a ray meets something.
+struct Place {
+    /// In which solids it would be behind it.
+    after: u32,
+    /// The farthest face that belongs to it.
+    up_to: f64,
+    /// The face that counts: distance and primitive.
+    face: (f64, u32),
+    /// Does the ray come from outside of it?
+    enters: bool,
 }
 
 impl Hits {
@@ -62,7 +84,9 @@ impl Hits {
         for first in (0..rays.len()).step_by(PACKET) {
             let all = rays.fill::<L>(packet, first, world.tree.has_triangles());
             for start in (0..PACKET).step_by(L::WIDTH).filter(|&start| all >> start != 0) {
-                rays.loads::<L>(first + start).medium.store(&mut ways.before[start..]);
+                let load = rays.loads::<L>(first + start);
+                load.medium.store(&mut ways.before[start..]);
+                load.band.store(&mut ways.band[start..]);
             }
             for ray in ones(all) {
                 ways.start(world, packet, ray);
@@ -82,6 +106,10 @@ impl Hits {
                 }
             }
             for ray in ones(all & !met) {
+                // Every solid ends somewhere: a ray that leaves the scene in one has missed its way out.
+                if index(ways.before[ray]) as u32 != OUTSIDE {
+                    stray.add(rays.pixel(first + ray));
+                }
                 (packet.t[ray], packet.primitive[ray]) = (f64::INFINITY, SKY);
             }
             let seen = if world.background == Rgb::gray(0.0) { met } else { all };
@@ -136,54 +164,90 @@ impl Ways {
     fn meet(
         &mut self,
         media: &mut Media<'_>,
-        packet: &Packet,
+        packet: &mut Packet,
         ray: usize,
         pixel: usize,
         stray: &mut StrayExits,
     ) -> Met {
         let world = media.world();
-        let (t, primitive, before) = (packet.t[ray], packet.primitive[ray], index(self.before[ray]) as u32);
-        let solid = world.solid_of(index(primitive));
+        let (t, primitive, before) =
+            (packet.t[ray], index(packet.primitive[ray]) as u32, index(self.before[ray]) as u32);
+        let solid = world.solid_of(primitive as usize);
         if solid == NO_SOLID {
             (self.after[ray], self.outer[ray]) = (self.before[ray], 1.0);
             return if t > 0.0 { Met::Face } else { Met::Nothing(t) };
         }
         let (origin, dir) = packet.ways::<f64>(ray);
-        let (mut after, mut up_to) = (before, t);
-        let enters = world.enters(index(primitive), solid, origin, dir, t);
+        let enters = world.enters(primitive as usize, solid, origin, dir, t);
+        let mut place = Place { after: before, up_to: t, face: (t, primitive), enters };
         if world.solids[solid as usize].touches {
-            let range = [t - world.clearance, t + world.clearance];
-            self.crossings.clear();
-            world.tree.crossings(origin, dir, range, &mut self.crossings);
-            for &(t, primitive) in &self.crossings {
-                up_to = up_to.max(t);
-                if t > 0.0
-                    && world.solid_of(primitive as usize) == NO_SOLID
-                    && f64::from(primitive) != packet.source[ray]
-                {
-                    // The opaque surface comes next, and nothing before it.
-                    return Met::Nothing(t.next_down());
-                }
-                after = media.cross(after, primitive, origin, dir, t);
+            let source = packet.source[ray];
+            if let Some(opaque) = self.look_around(media, (origin, dir), before, source, &mut place) {
+                // What is opaque is seen, and nothing else in its place.
+                (packet.t[ray], packet.primitive[ray]) = (opaque.0, f64::from(opaque.1));
+                (self.after[ray], self.outer[ray]) = (self.before[ray], 1.0);
+                return Met::Face;
             }
         } else if t > 0.0 || !enters {
-            after = media.cross(before, index(primitive) as u32, origin, dir, t);
+            place.after = media.cross(before, primitive, origin, dir, t);
         }
-        if after == before && !enters && t > world.clearance && !media.contains(before, solid) {
+        let Place { after, up_to, face, enters } = place;
+        if after == before && !enters && t > self.since[ray] + world.clearance && !media.contains(before, solid) {
             stray.add(pixel);
         }
-        let (from, to) = (media.medium(before).eta, media.medium(after).eta);
         if media.top(before) == media.top(after) {
             self.before[ray] = f64::from(after);
             return Met::Nothing(up_to);
         }
-        if from.to_bits() == to.to_bits() && !(enters && world.shows(index(primitive))) {
-            self.absorb(media, ray, t);
-            (self.before[ray], self.since[ray]) = (f64::from(after), t);
+        let band = index(self.band[ray]) as u32;
+        if media.same_index(before, after, band) && !(enters && world.shows(face.1 as usize)) {
+            self.absorb(media, ray, face.0);
+            (self.before[ray], self.since[ray]) = (f64::from(after), face.0);
             return Met::Nothing(up_to);
         }
+        (packet.t[ray], packet.primitive[ray]) = (face.0, f64::from(face.1));
         (self.after[ray], self.outer[ray]) = (f64::from(after), f64::from(u8::from(enters)));
         Met::Face
+    }
+
+    /// Crosses all faces in one place, in the order of their ids, so that a rounding does not decide which was entered last. The
+    /// face that counts is the one into the medium behind the place, or else the one out of the medium before it. Returns an
+    /// opaque surface there, if there is one.
+    fn look_around(
+        &mut self,
+        media: &mut Media<'_>,
+        (origin, dir): (Vec3, Vec3),
+        before: u32,
+        source: f64,
+        place: &mut Place,
+    ) -> Option<(f64, u32)> {
+        let world = media.world();
+        let t = place.up_to;
+        self.crossings.clear();
+        world.tree.crossings(origin, dir, [t - world.clearance, t + world.clearance], &mut self.crossings);
+        self.crossings.sort_by_key(|&(_, primitive)| primitive);
+        let opaque = |&&(t, primitive): &&(f64, u32)| {
+            t > 0.0 && world.solid_of(primitive as usize) == NO_SOLID && f64::from(primitive) != source
+        };
+        if let Some(&found) = self.crossings.iter().find(opaque) {
+            return Some(found);
+        }
+        let mut crossed = |face: &(f64, u32)| {
+            let next = media.cross(place.after, face.1, origin, dir, face.0);
+            place.up_to = place.up_to.max(face.0);
+            std::mem::replace(&mut place.after, next) != next
+        };
+        self.crossings.retain(|face| crossed(face));
+        let of = |solid: u32| {
+            self.crossings.iter().rev().find(|(_, primitive)| world.solid_of(*primitive as usize) == solid)
+        };
+        let (into, out_of) = (media.top(place.after), media.top(before));
+        if let Some(&face) = of(into).filter(|_| into != NO_SOLID) {
+            (place.face, place.enters) = (face, true);
+        } else if let Some(&face) = of(out_of).filter(|_| out_of != NO_SOLID) {
+            (place.face, place.enters) = (face, false);
+        }
+        None
     }
 
     /// Takes away what the medium absorbs up to a distance.

@@ -13,6 +13,7 @@
 //! compound, and bounce n weighs `kr^(n(n+1)/2)` instead of `kr^n`. In the course's models `f` stays 1.
 
 use super::hits::{Batch, Coefficients};
+use super::media::{OUTSIDE, WHITE};
 use super::queue::{Load, Rays, Weight};
 use crate::film::Rgb;
 use crate::geometry::Vec3;
@@ -79,7 +80,8 @@ pub(crate) fn exit_ray<L: Lanes>(blend: Blend, hits: &Batch<'_, L>) -> (L::Mask,
 #[inline(always)]
 fn child<L: Lanes>(hits: &Batch<'_, L>, origin: Vec3<L>, dir: Vec3<L>, weight: Weight<L>) -> Rays<L> {
     let (source, parent, pixel) = (hits.primitive(), hits.ray(), hits.pixel());
-    Rays { origin, dir, load: Load { weight, t_min: L::splat(T_MIN), source, parent, pixel, medium: L::splat(0.0) } }
+    let (medium, band) = (L::splat(f64::from(OUTSIDE)), L::splat(f64::from(WHITE)));
+    Rays { origin, dir, load: Load { weight, t_min: L::splat(T_MIN), source, parent, pixel, medium, band } }
 }
 
 /// What the local colour is multiplied by.

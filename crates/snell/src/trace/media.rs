@@ -14,6 +14,9 @@ use std::collections::BTreeMap;
 /// The handle of the set of no solids.
 pub(crate) const OUTSIDE: u32 = 0;
 
+/// The band of a ray that has not split: all colours.
+pub(crate) const WHITE: u32 = u32::MAX;
+
 /// A ray from a surface towards a light.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Way {
@@ -85,6 +88,14 @@ impl<'a> Media<'a> {
         self.intern(balance.into_iter().filter(|&(_, out)| out > 0).map(|(solid, _)| solid).collect())
     }
 
+    /// Forgets all sets but those in which camera rays start from: handles are good for a tile.
+    pub fn forget(&mut self) {
+        let kept = self.eye.unwrap_or(OUTSIDE) as usize + 1;
+        self.sets.truncate(kept);
+        self.handles.retain(|_, handle| (*handle as usize) < kept);
+        self.across.clear();
+    }
+
     /// Is no solid near the camera, so that all its rays start outside?
     pub fn camera_is_outside(&self) -> bool {
         self.eye.is_none()
@@ -95,7 +106,9 @@ impl<'a> Media<'a> {
         let (eye, mut set) = (self.world.camera.eye, self.eye.unwrap_or(OUTSIDE));
         let mut crossings = std::mem::take(&mut self.crossings);
         crossings.clear();
-        self.world.tree.crossings(eye, dir, [0.0, (origin - eye).length()], &mut crossings);
+        // What is met again from the image plane does not count twice: see `cross`.
+        let end = (origin - eye).length() + self.world.clearance;
+        self.world.tree.crossings(eye, dir, [0.0, end], &mut crossings);
         for &(t, primitive) in &crossings {
             set = self.cross(set, primitive, eye, dir, t);
         }
@@ -126,7 +139,8 @@ impl<'a> Media<'a> {
         let of = |solid: u32| self.world.solids[solid as usize].medium;
         // The last of the largest.
         let top = solids.iter().copied().max_by_key(|&solid| of(solid).priority);
-        let outside = Medium { eta: self.world.eta_outside, sigma_a: Rgb::gray(0.0), priority: i32::MIN };
+        let outside =
+            Medium { eta: self.world.eta_outside, spectrum: None, sigma_a: Rgb::gray(0.0), priority: i32::MIN };
         let handle = self.sets.len() as u32;
         let set = Set { top: top.unwrap_or(NO_SOLID), medium: top.map_or(outside, of), solids: solids.clone() };
         self.sets.push(set);
@@ -147,12 +161,13 @@ impl<'a> Media<'a> {
         // What lies in one place is one interface, as for all rays.
         for place in crossings.chunk_by(|a, b| b.0 - a.0 <= clearance) {
             let (t, first) = place[0];
-            let mut next = set;
+            let (mut next, mut entered) = (set, None);
             for &(t, primitive) in place {
                 let solid = world.solid_of(primitive as usize);
                 let leaves = f64::from(primitive) == way.source;
                 if solid == NO_SOLID {
-                    if t > 0.0 && t < distance && !leaves {
+                    // The far wall of a sphere that it leaves inward is another matter.
+                    if t > 0.0 && t < distance && !(leaves && t <= clearance) {
                         light = Rgb::gray(0.0);
                     }
                     continue;
@@ -161,12 +176,15 @@ impl<'a> Media<'a> {
                 if !(enters && (leaves || t <= 0.0)) {
                     let after = self.cross(next, primitive, way.origin, way.dir, t);
                     if enters && after != next {
-                        light = light * world.lets_through(primitive as usize);
+                        entered = Some((solid, primitive));
                     }
                     next = after;
                 }
             }
             if self.top(next) != self.top(set) {
+                if let Some((_, primitive)) = entered.filter(|(solid, _)| *solid == self.top(next)) {
+                    light = light * world.lets_through(primitive as usize);
+                }
                 let (before, after) = (*self.medium(set), *self.medium(next));
                 light = light * transmittance_rgb::<f64>(before.sigma_a, t - since);
                 since = t;
@@ -210,6 +228,31 @@ impl<'a> Media<'a> {
     #[inline(always)]
     pub fn top(&self, set: u32) -> u32 {
         self.sets[set as usize].top
+    }
+
+    /// The index that is there for a ray of this band; [`WHITE`] for one that has not split.
+    #[inline(always)]
+    pub fn eta(&self, set: u32, band: u32) -> f64 {
+        let medium = self.medium(set);
+        match medium.spectrum {
+            Some(spectrum) if band != WHITE => self.world.spectra[spectrum as usize][band as usize],
+            _ => medium.eta,
+        }
+    }
+
+    /// Does a ray that has not split split here?
+    #[inline(always)]
+    pub fn splits(&self, before: u32, after: u32) -> bool {
+        before != after && (self.medium(before).spectrum, self.medium(after).spectrum) != (None, None)
+    }
+
+    /// Is the index the same on both sides, for a ray of this band?
+    pub fn same_index(&self, before: u32, after: u32, band: u32) -> bool {
+        let same = |band: u32| self.eta(before, band).to_bits() == self.eta(after, band).to_bits();
+        if band == WHITE && self.splits(before, after) {
+            return (0..self.world.bands.len() as u32).all(same);
+        }
+        same(band)
     }
 
     /// The medium that is there.

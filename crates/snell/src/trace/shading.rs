@@ -57,6 +57,10 @@ impl ShadowRays {
             };
             let shows = if real_optics { whitted::has_local_color(&batch) } else { batch.active };
             let mut lit = shows & batch.normal().dot(wi).gt(L::splat(0.0));
+            if real_optics {
+                // Light does not shine through the body of a smoothed mesh.
+                lit = lit & batch.geometric_normal().dot(wi).gt(L::splat(0.0));
+            }
             self.wi.push(L::Mask::first(hits.len() - start), wi.into());
             if with_shadows && (tinted || lit.any()) {
                 count += lit.bits().count_ones() as usize;

@@ -13,7 +13,8 @@ pub struct Statistics {
     pub stray: StrayExits,
 }
 
-/// Rays that met a face from inside without having entered its solid: it was passed over.
+/// Rays that met a face from inside without having entered its solid, which was passed over, or that left the scene without
+/// having left a solid.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct StrayExits {
     /// How many.
@@ -60,7 +61,7 @@ impl RayCounts {
     }
 }
 
-/// Light behind branches that were cut off at the depth limit (or at the limit of rays per pixel).
+/// Light behind branches that were cut off: at the depth limit, at the limit of rays per pixel, or below `min_throughput`.
 ///
 /// Measured by the throughput of the rays that were not sent: a throughput of 0.05 means that a white thing of radiance
 /// 1 behind that branch would have made the pixel brighter by 0.05. What is really there was not looked at.

@@ -2,6 +2,7 @@
 
 use super::generation::Observer;
 use super::hits::Hits;
+use super::media::WHITE;
 use super::queue::{Generation, RayKind};
 use crate::film::Rgb;
 use crate::geometry::Vec3;
@@ -20,6 +21,8 @@ pub struct Node {
     pub origin: Vec3,
     /// Where it goes.
     pub dir: Vec3,
+    /// Which band of light, counted from violet; `None` for all of it.
+    pub band: Option<u32>,
     /// What it can add to the pixel for each unit of radiance.
     pub throughput: Rgb,
     /// What it hit: primitive, distance, and the unit normal that faces the ray; `None` also for the background.
@@ -68,6 +71,7 @@ impl Observer for Recorder {
                 parent: (self.depth > 0).then(|| self.parents + index(load.parent)),
                 origin,
                 dir,
+                band: Some(index(load.band) as u32).filter(|&band| band != WHITE),
                 throughput: load.weight.throughput(),
                 hit: None,
                 contribution: Rgb::black(),

@@ -5,17 +5,20 @@
 //! | --- | --- | --- |
 //! | the hit adds | `ko × local + emission` | nothing |
 //! | mirror ray | `ko·kr + (1 − ko)·R` | `R` |
-//! | refracted ray | `(1 − ko)·(1 − R)` | `1 − R` |
+//! | refracted ray | `(1 − ko)·(1 − R)`, times `kd` if it is dyed | `1 − R` |
 //!
 //! all times the throughput. `R` is Fresnel's reflectance of the interface; total internal reflection is `R = 1`. Radiance is
 //! carried as `L/n²`, which an interface does not change. A surface that lets nothing through has `ko` 1.
+//!
+//! At its first dispersive interface a white ray splits: a refracted ray for each band of light, with the band's index and its
+//! share of white. What is reflected goes one way for all, with `R` = Σ share·R of the bands, and stays white.
 
 use super::hits::Batch;
-use super::media::Media;
-use super::queue::{Load, Rays, Weight};
+use super::media::{Media, WHITE};
+use super::queue::{Load, RayKind, RayQueue, Rays, Weight};
 use crate::film::Rgb;
 use crate::geometry::Vec3;
-use crate::lanes::Lanes;
+use crate::lanes::{Lanes, Mask};
 use crate::optics::fresnel::fresnel_dielectric;
 use crate::optics::snell::{reflect, refract};
 
@@ -39,56 +42,83 @@ fn opacity<L: Lanes>(hits: &Batch<'_, L>) -> Rgb<L> {
     Rgb::select(face.before.eq(face.after), Rgb::gray(1.0).splat(), ko)
 }
 
-/// What a batch of hits adds, and the mirror and refracted rays that leave.
+/// What a batch of hits adds, and the mirror and refracted rays that leave. White rays that meet dispersion split: their
+/// refracted rays go to the queues of their bands.
 #[inline(always)]
-pub(crate) fn answer<L: Lanes>(hits: &Batch<'_, L>, media: &Media<'_>) -> (Rgb<L>, Leaving<L>, Leaving<L>) {
+pub(crate) fn answer<L: Lanes>(
+    hits: &Batch<'_, L>,
+    media: &Media<'_>,
+    bands: &mut [RayQueue],
+) -> (Rgb<L>, Leaving<L>, Leaving<L>) {
     let (zero, white, none) = (L::splat(0.0), Rgb::gray(1.0).splat::<L>(), Rgb::black());
     let (face, throughput) = (hits.face(), hits.weight().throughput());
     let outer = face.outer.gt(zero);
-    let color = |on_outer_side: Rgb<L>| Rgb::select(outer, on_outer_side, none);
-    let ko = color(opacity(hits));
+    let ko = Rgb::select(outer, opacity(hits), none);
     let kr = hits.material_color(
         #[inline(always)]
         |m| m.kr,
     );
-    let emission = color(hits.material_color(
+    let emission = hits.material_color(
         #[inline(always)]
         |m| m.emission,
-    ));
-    let own = ko * hits.local_color() + emission;
+    );
+    let own = ko * hits.local_color() + Rgb::select(outer, emission, none);
     let sky = hits.world.background.splat();
     let contribution = throughput * Rgb::select(hits.is_sky(), sky, own);
 
-    let eta = L::from_fn(|lane| {
-        let [before, after] = hits.media_of(lane);
-        media.medium(after).eta / media.medium(before).eta
-    });
-    let (wo, n, ng) = (hits.wo(), hits.normal(), hits.geometric_normal());
-    let shading = Directions::new(wo, n, eta);
-    let flat = Directions::new(wo, ng, eta);
-    // A smoothed normal gives way where it would send rays to the wrong side.
-    let wrong = !(shading.mirror.dot(ng).gt(zero) & (shading.refracted.dot(ng).lt(zero) | !shading.refracts));
-    let to = Directions::select(wrong | !wo.dot(n).gt(zero), flat, shading);
-    let r = Rgb::new(to.reflectance, to.reflectance, to.reflectance);
-    let clear = white - ko;
-    let dye = Rgb::select(
-        outer,
-        hits.material_color(
-            #[inline(always)]
-            |m| if m.dyed { m.kd } else { Rgb::gray(1.0) },
-        ),
-        white,
+    let dye = hits.material_color(
+        #[inline(always)]
+        |m| if m.dyed { m.kd } else { Rgb::gray(1.0) },
     );
-    let mirror_weight = throughput * (ko * kr + clear * r);
-    let refracted_weight = throughput * (clear * dye) * (white - r);
-    let child = |dir: Vec3<L>, medium: L, attenuation: Rgb<L>| {
+    let (clear, dye) = (white - ko, Rgb::select(outer, dye, white));
+    let child = |dir: Vec3<L>, medium: L, band: L, attenuation: Rgb<L>| {
         let (source, parent, pixel) = (hits.primitive(), hits.ray(), hits.pixel());
-        let load = Load { weight: Weight { attenuation, factor: white }, t_min: zero, source, parent, pixel, medium };
+        let weight = Weight { attenuation, factor: white };
+        let load = Load { weight, t_min: zero, source, parent, pixel, medium, band };
         (hits.active & attenuation.not_black(), Rays { origin: hits.point(), dir, load })
     };
-    let mirror = child(to.mirror, face.before, mirror_weight);
-    let (sends, refracted) = child(to.refracted, face.after, refracted_weight);
-    (contribution, mirror, (sends & to.refracts & !face.before.eq(face.after), refracted))
+
+    let to = Directions::new(hits, relative_index(hits, media, None));
+    let mut reflectance = Rgb::new(to.reflectance, to.reflectance, to.reflectance);
+    let goes_through = !face.before.eq(face.after);
+    let splits = if bands.is_empty() { L::Mask::from_bits(0) } else { splitting(hits, media) };
+    if splits.any() {
+        let mut reflected = none;
+        for (number, queue) in bands.iter_mut().enumerate() {
+            let share = hits.world.bands[number].weight.splat::<L>();
+            let to = Directions::new(hits, relative_index(hits, media, Some(number as u32)));
+            let r = Rgb::new(to.reflectance, to.reflectance, to.reflectance);
+            reflected = reflected + share * r;
+            let weight = throughput * (clear * dye) * (share * (white - r));
+            let (sends, rays) = child(to.refracted, face.after, L::splat(number as f64), weight);
+            queue.push(RayKind::Refracted, sends & splits & to.refracts, &rays);
+        }
+        reflectance = Rgb::select(splits, reflected, reflectance);
+    }
+    let band = hits.band();
+    let mirror = child(to.mirror, face.before, band, throughput * (ko * kr + clear * reflectance));
+    let refracted_weight = throughput * (clear * dye) * (white - reflectance);
+    let (sends, refracted) = child(to.refracted, face.after, band, refracted_weight);
+    (contribution, mirror, (sends & to.refracts & goes_through & !splits, refracted))
+}
+
+/// `eta_t / eta_i`, for the band of each ray, or for one that white rays split into.
+#[inline(always)]
+fn relative_index<L: Lanes>(hits: &Batch<'_, L>, media: &Media<'_>, of: Option<u32>) -> L {
+    L::from_fn(|lane| {
+        let [before, after, band] = hits.media_of(lane);
+        let band = of.unwrap_or(band);
+        media.eta(after, band) / media.eta(before, band)
+    })
+}
+
+/// Which rays are white and meet dispersion?
+fn splitting<L: Lanes>(hits: &Batch<'_, L>, media: &Media<'_>) -> L::Mask {
+    let bits = (0..L::WIDTH).map(|lane| {
+        let [before, after, band] = hits.media_of(lane);
+        u32::from(band == WHITE && media.splits(before, after)) << lane
+    });
+    hits.active & L::Mask::from_bits(bits.sum())
 }
 
 /// Where light goes from a smooth interface.
@@ -102,8 +132,19 @@ struct Directions<L: Lanes> {
 }
 
 impl<L: Lanes> Directions<L> {
+    /// By the shading normal, which gives way where it would send rays to the wrong side of the face.
     #[inline(always)]
-    fn new(wo: Vec3<L>, n: Vec3<L>, eta: L) -> Self {
+    fn new(hits: &Batch<'_, L>, eta: L) -> Self {
+        let (wo, n, ng, zero) = (hits.wo(), hits.normal(), hits.geometric_normal(), L::splat(0.0));
+        let (shading, flat) = (Self::by(wo, n, eta), Self::by(wo, ng, eta));
+        let right = wo.dot(n).gt(zero)
+            & shading.mirror.dot(ng).gt(zero)
+            & (shading.refracted.dot(ng).lt(zero) | !shading.refracts);
+        Self::select(right, shading, flat)
+    }
+
+    #[inline(always)]
+    fn by(wo: Vec3<L>, n: Vec3<L>, eta: L) -> Self {
         let reflectance = fresnel_dielectric(wo.dot(n), eta);
         let (refracted, exists) = refract(wo, n, L::splat(1.0) / eta);
         let refracts = exists & reflectance.lt(L::splat(1.0));

@@ -8,6 +8,7 @@ pub use camera::CameraFrame;
 use solid::MeshSolids;
 pub(crate) use solid::{Medium, NO_SOLID, Solid};
 pub use surface::NO_PRIMITIVE;
+pub(crate) use surface::Side;
 use surface::{FLAT, Placement, Surfaces};
 
 use crate::film::Rgb;
@@ -16,6 +17,7 @@ use crate::geometry::bvh::{Bvh, Instance, Quality, Shapes, TreeStatistics};
 use crate::geometry::mesh::MAX_SMOOTHED_VALENCE;
 use crate::geometry::solid::{Options, repair};
 use crate::geometry::{Affine, Bounds, Sphere, TriangleMesh, Vec3, triangle};
+use crate::optics::spectrum::Band;
 use crate::scene::{
     Integrator, LARGEST_NUMBER, Material, Mesh, OpenMesh, Problem, Render, Scene, Step, Transform, Warning,
     WarningCode, validate,
@@ -69,6 +71,12 @@ pub struct World {
     placements: Vec<Placement>,
     /// What light goes through, where there is real optics.
     pub(crate) solids: Vec<Solid>,
+    /// Into what light splits, if it does.
+    pub(crate) bands: Vec<Band>,
+    /// The indices of the bands, of each dispersive material.
+    pub(crate) spectra: Vec<Vec<f64>>,
+    /// For each material its spectrum.
+    spectrum_of: Vec<Option<u32>>,
     /// Light from where nothing is.
     pub(crate) background: Rgb,
     /// How far a computed hit may be off, in scene units: faces nearer to each other than this along a ray are in one place.
@@ -130,6 +138,9 @@ impl World {
             models: Vec::new(),
             placements: Vec::new(),
             solids: Vec::new(),
+            bands: Vec::new(),
+            spectra: Vec::new(),
+            spectrum_of: Vec::new(),
             background: scene.background,
             clearance: 0.0,
             behind: 0.0,
@@ -141,6 +152,11 @@ impl World {
             let place = vec![Step::from("camera"), Step::from("near")];
             return Err(vec![Problem { place, message, help: Some("move it away, like near = -5".to_owned()) }]);
         }
+        if world.materials.is_empty() {
+            // Where nothing is, nobody asks what it is made of; but rows of the background are rows like others.
+            world.materials.push(Material::default());
+        }
+        world.find_indices();
         let material_ids: IndexMap<&str, u32> =
             scene.materials.keys().enumerate().map(|(i, name)| (name.as_str(), i as u32)).collect();
         for (i, s) in scene.spheres.iter().enumerate() {
@@ -152,7 +168,7 @@ impl World {
             if world.refracts(material) {
                 world.surfaces.solid_of.resize(i, NO_SOLID);
                 world.surfaces.solid_of.push(world.solids.len() as u32);
-                let (medium, bounds) = (Medium::of(&world.materials[material as usize]), world.spheres[i].bounds());
+                let (medium, bounds) = (world.medium_of(material), world.spheres[i].bounds());
                 world.solids.push(Solid { medium, inward: false, touches: false, bounds });
             }
         }
@@ -309,7 +325,7 @@ impl World {
         material_of: &impl Fn(usize, &TriangleMesh) -> u32,
     ) -> Result<(TriangleMesh, Option<MeshSolids>), (String, String)> {
         let materials = (0..placed.faces.len()).map(|f| material_of(f, &placed));
-        let mut media = materials.filter(|&m| self.refracts(m)).map(|m| Medium::of(&self.materials[m as usize]));
+        let mut media = materials.filter(|&m| self.refracts(m)).map(|m| self.medium_of(m));
         let Some(medium) = media.next() else { return Ok((placed, None)) };
         if media.any(|other| other != medium) {
             let message =

@@ -5,12 +5,14 @@ use crate::film::Rgb;
 use crate::geometry::bvh::{Instance, Shapes};
 use crate::geometry::solid::{Component, EdgePlace, Found, Orientation, Report, structure};
 use crate::geometry::{Affine, Bounds, TriangleMesh, Vec3};
-use crate::scene::Material;
+use crate::optics::dispersion::LINE_D_NM;
+use crate::optics::spectrum;
+use crate::scene::Integrator;
 
 /// "No solid", where the number of one is expected: a primitive that lets no light through.
 pub(crate) const NO_SOLID: u32 = u32::MAX;
 
-/// More solids than this are not compared with each other: all count as touching.
+/// More solids than this, among as many objects, are not compared with each other: all count as touching.
 const COMPARED: usize = 2000;
 
 /// A closed surface with a medium inside.
@@ -29,18 +31,14 @@ pub(crate) struct Solid {
 /// What fills a solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Medium {
-    /// Index of refraction.
+    /// Index of refraction, of all colours or of the d line.
     pub eta: f64,
+    /// Where the indices of the bands stand in [`World::spectra`], if they differ.
+    pub spectrum: Option<u32>,
     /// Absorption per scene unit.
     pub sigma_a: Rgb,
     /// Where solids overlap, the highest is there.
     pub priority: i32,
-}
-
-impl Medium {
-    pub fn of(material: &Material) -> Self {
-        Self { eta: material.eta, sigma_a: material.absorption(), priority: material.priority }
-    }
 }
 
 /// The solids of a mesh: one for each component that is not the wall of a cavity, which belongs to the solid around it.
@@ -53,7 +51,16 @@ pub(super) struct MeshSolids {
 impl MeshSolids {
     /// Fails with what keeps the mesh from being a solid.
     pub fn of(mesh: &TriangleMesh, medium: Medium) -> Result<Self, String> {
-        let report = structure(mesh);
+        let mut report = structure(mesh);
+        let inside_out = |report: &Report| report.components.iter().any(|c| c.inside_out);
+        let mut turned = false;
+        if inside_out(&report) {
+            // Turned over, walls of cavities are told from solids again.
+            let faces = mesh.faces.iter().map(|&[a, b, c]| [a, c, b]).collect();
+            let other = structure(&TriangleMesh { faces, ..mesh.clone() });
+            turned = !inside_out(&other);
+            report = if turned { other } else { report };
+        }
         if !report.is_solid() {
             return Err(why_not(&report));
         }
@@ -61,7 +68,7 @@ impl MeshSolids {
         let mut number_of = vec![NO_SOLID; report.components.len()];
         for (number, component) in number_of.iter_mut().zip(&report.components).filter(|(_, c)| !c.cavity) {
             *number = solids.len() as u32;
-            let inward = component.orientation == Orientation::Inward;
+            let inward = (component.orientation == Orientation::Inward) != turned;
             solids.push(Solid { medium, inward, touches: false, bounds: component.bounds });
         }
         for i in 0..report.components.len() {
@@ -122,6 +129,34 @@ impl Solid {
 }
 
 impl World {
+    /// The medium of a material.
+    pub(super) fn medium_of(&self, material: u32) -> Medium {
+        let m = &self.materials[material as usize];
+        let spectrum = self.spectrum_of[material as usize];
+        Medium { eta: m.eta, spectrum, sigma_a: m.absorption(), priority: m.priority }
+    }
+
+    /// Works out the indices of all materials: of the d line, and of the bands of real optics.
+    pub(super) fn find_indices(&mut self) {
+        if self.render.integrator == Integrator::Whitted && self.render.bands > 1 {
+            self.bands = spectrum::bands(self.render.bands as usize);
+        }
+        for material in &mut self.materials {
+            // Validation has seen to it that there are indices.
+            let Ok(dispersion) = material.dispersion() else { continue };
+            material.eta = dispersion.eta(LINE_D_NM).unwrap_or(material.eta);
+            let spectrum: Vec<f64> = self.bands.iter().filter_map(|b| dispersion.eta(b.wavelength_nm).ok()).collect();
+            let differ = spectrum.iter().any(|eta| eta.to_bits() != material.eta.to_bits());
+            let known = self.spectra.iter().position(|other| *other == spectrum);
+            self.spectrum_of.push((differ && spectrum.len() == self.bands.len()).then(|| {
+                known.unwrap_or_else(|| {
+                    self.spectra.push(spectrum);
+                    self.spectra.len() - 1
+                }) as u32
+            }));
+        }
+    }
+
     /// Which solids may touch something: those whose box meets that of another solid or object.
     pub(super) fn touching(&self, shapes: &Shapes<'_>, instances: &[Instance]) -> Vec<bool> {
         if self.solids.is_empty() {
@@ -130,14 +165,17 @@ impl World {
         // The boxes of the solids first, then those of everything that is none.
         let mut boxes: Vec<Bounds> = self.solids.iter().map(|solid| solid.bounds).collect();
         for object in &self.objects {
-            let ids = object.first as usize..(object.first + object.count) as usize;
-            let opaque = ids.filter(|&id| id < shapes.count() && self.solid_of(id) == NO_SOLID);
-            let bounds = opaque.map(|id| shapes.bounds(id)).reduce(Bounds::union);
-            boxes.extend(bounds);
+            let mut opaque = (object.first as usize..(object.first + object.count) as usize)
+                .filter(|&id| self.solid_of(id) == NO_SOLID);
+            if object.first as usize >= shapes.count() {
+                let instance = instances.iter().find(|i| i.first == object.first);
+                boxes.extend(instance.filter(|_| opaque.next().is_some()).map(|i| i.bounds));
+            } else {
+                boxes.extend(opaque.map(|id| shapes.bounds(id)).reduce(Bounds::union));
+            }
         }
-        boxes.extend(instances.iter().filter(|i| self.solid_of(i.first as usize) == NO_SOLID).map(|i| i.bounds));
         let room = Vec3::new(self.clearance, self.clearance, self.clearance);
-        let too_many = self.solids.len() > COMPARED;
+        let too_many = self.solids.len().saturating_mul(boxes.len()) > COMPARED * COMPARED;
         let touches = |number: usize| {
             let grown = Bounds { min: boxes[number].min - room, max: boxes[number].max + room };
             too_many || boxes.iter().enumerate().any(|(other, bounds)| other != number && grown.meets(bounds))

@@ -24,6 +24,15 @@ pub(super) struct Surfaces {
     pub corner_normals_of: Vec<u32>,
 }
 
+/// From which side rays meet spheres.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Side<L: Lanes> {
+    /// From inside.
+    pub within: L::Mask,
+    /// It is not known.
+    pub either: L::Mask,
+}
+
 /// A mesh in one of its places.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Placement {
@@ -78,7 +87,7 @@ impl World {
     /// Does the outer side of a transparent surface show something besides what it reflects?
     pub(crate) fn shows(&self, primitive: usize) -> bool {
         let material = &self.materials[self.material_of(primitive) as usize];
-        material.ko != Rgb::gray(0.0) || material.emission != Rgb::gray(0.0)
+        material.ko != Rgb::gray(0.0) || material.emission != Rgb::gray(0.0) || material.dyed
     }
 
     /// The share of light that passes the outer side of a transparent surface, without what Fresnel reflects.
@@ -120,14 +129,14 @@ impl World {
     }
 
     /// The shading and the geometric normals at some hits, turned to face rays of these directions, not yet of unit length. The
-    /// geometric normal decides the side; on spheres `within` says which rays come from inside.
+    /// geometric normal decides the side, on spheres what is known of it.
     #[inline(always)]
     pub(crate) fn facing_normals<L: Lanes>(
         &self,
         primitives: &[usize; MAX_WIDTH],
         point: Vec3<L>,
         dir: Vec3<L>,
-        within: L::Mask,
+        side: &Side<L>,
     ) -> [Vec3<L>; 2] {
         let bit = |lane: usize| u32::from(primitives[lane] < self.spheres.len()) << lane;
         let spheres = L::Mask::from_bits((0..L::WIDTH).map(bit).sum());
@@ -136,7 +145,8 @@ impl World {
             let center = |lane: usize| self.spheres.get(primitives[lane]).map_or(Vec3::default(), |s| s.center);
             let one = primitives[..L::WIDTH].iter().all(|&p| p == primitives[0]);
             normal = normal - if one { center(0).splat() } else { Vec3::from_fn(center) };
-            normal = Vec3::select(within, -normal, normal);
+            let inward = side.within | (side.either & normal.dot(dir).gt(L::splat(0.0)));
+            normal = Vec3::select(inward, -normal, normal);
         }
         if (!spheres).any() {
             // A lane with a sphere gets a triangle without area, and is not looked at.
