@@ -12,9 +12,10 @@ pub(crate) const SIZE: usize = 64;
 
 type Column = [f64; SIZE];
 
-/// 64 rays in columns, and the nearest hit of each so far.
+/// 64 rays in columns, and the nearest hit of each so far. The columns come first and begin at cache lines, so that no group
+/// of lanes lies in two of them.
 #[derive(Debug)]
-#[repr(align(64))]
+#[repr(C, align(64))]
 pub(crate) struct Packet {
     pub(super) origin: [Column; 3],
     pub(super) dir: [Column; 3],
