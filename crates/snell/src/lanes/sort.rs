@@ -12,8 +12,7 @@ pub(super) fn by_insertion(
     while named != 0 {
         let place = named.trailing_zeros() as usize & 7;
         named &= named - 1;
-        // Patterns of positive numbers are in the order of the numbers.
-        let number = f64::from_bits(numbers[place].min(f64::MAX).to_bits() & !7);
+        let number = numbers[place];
         let mut at = count;
         while at > 0 && sorted[at - 1] < number {
             (sorted[at & 7], sorted_tags[at & 7]) = (sorted[at - 1], sorted_tags[at - 1]);
