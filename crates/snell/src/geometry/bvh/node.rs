@@ -42,7 +42,7 @@ const TAG: u32 = 62;
 const PLACE: u32 = 46;
 
 impl Child {
-    pub const NOTHING: Self = Self(u64::MAX);
+    pub const NOTHING: Self = Self(3 << TAG);
     pub const ROOT: Self = Self(0);
 
     pub fn node(index: usize) -> Self {

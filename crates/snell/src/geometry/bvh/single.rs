@@ -75,6 +75,17 @@ impl Bvh {
         let (mut hit, mut turn) = (0, 0);
         while count > 0 {
             let walker = &mut walkers[walking[turn] & (WALKERS - 1)];
+            // Asked a turn after it was decided: a wrong guess costs nothing but itself, as the answer has long been there.
+            if walker.child == Child::NOTHING {
+                let Some(ray) = next_ray() else {
+                    // Whoever takes its place makes the next step.
+                    count -= 1;
+                    walking[turn] = walking[count];
+                    turn = if turn >= count { 0 } else { turn };
+                    continue;
+                };
+                walker.start(packet, ray, from);
+            }
             let ray = walker.ray & 63;
             if walker.child.is_node() {
                 walker.open::<L>(&self.nodes[walker.child.number()], packet.t[ray].max(0.0));
@@ -86,17 +97,8 @@ impl Bvh {
             }
             // Hits found meanwhile may have closed boxes.
             walker.child = walker.waiting.pop(packet.t[ray].max(0.0));
-            if walker.child != Child::NOTHING {
-                self.prefetch(walker.child);
-            } else if let Some(ray) = next_ray() {
-                walker.start(packet, ray, from);
-            } else {
-                count -= 1;
-                walking[turn] = walking[count];
-                // Whoever takes its place makes the next step.
-                turn = turn.wrapping_sub(1);
-            }
-            turn = turn.wrapping_add(1);
+            self.prefetch(walker.child);
+            turn += 1;
             turn = if turn >= count { 0 } else { turn };
         }
         hit
