@@ -166,8 +166,8 @@ impl<'a> Media<'a> {
                 let solid = world.solid_of(primitive as usize);
                 let leaves = f64::from(primitive) == way.source;
                 if solid == NO_SOLID {
-                    // The far wall of a sphere that it leaves inward is another matter.
-                    if t > 0.0 && t < distance && !(leaves && t <= clearance) {
+                    let starts = leaves && world.starts_at(primitive as usize, way.origin, way.dir, t);
+                    if t > 0.0 && t < distance && !starts {
                         light = Rgb::gray(0.0);
                     }
                     continue;

@@ -97,6 +97,15 @@ impl World {
         if material.dyed { clear * material.kd } else { clear }
     }
 
+    /// Is a crossing of the primitive on which a ray starts only its start? Not if it is the far wall of a sphere that the ray
+    /// leaves inward. Distances do not tell: at a grazing angle they are off by much.
+    pub(crate) fn starts_at(&self, primitive: usize, origin: Vec3, dir: Vec3, t: f64) -> bool {
+        self.spheres.get(primitive).is_none_or(|sphere| {
+            let v = (sphere.center - origin).dot(dir);
+            !(v > 0.0 && t > v)
+        })
+    }
+
     /// The unit normal of the face itself, outward.
     pub(crate) fn geometric_normal(&self, primitive: usize, point: Vec3) -> Vec3 {
         match self.spheres.get(primitive) {
