@@ -13,7 +13,7 @@ mod tests;
 mod weld;
 
 use super::topology::{Kind, Topology};
-use super::{NO_COMPONENT, structure};
+use super::{NO_COMPONENT, Report, structure};
 use crate::geometry::TriangleMesh;
 
 /// What to mend.
@@ -130,12 +130,24 @@ fn keep(mesh: &mut TriangleMesh, wanted: impl Fn(usize) -> bool) -> usize {
     before - mesh.faces.len()
 }
 
+/// Turns what is inside out, if that leaves less of it: in a tangle of faces one may be inside out because of another, and
+/// would be turned to and fro.
 fn turn_outward(mesh: &mut TriangleMesh) -> usize {
+    let inside_out = |report: &Report| report.components.iter().filter(|c| c.inside_out).count();
     let report = structure(mesh);
-    for (face, &component) in mesh.faces.iter_mut().zip(&report.component_of) {
+    let before = inside_out(&report);
+    if before == 0 {
+        return 0;
+    }
+    let mut turned = mesh.clone();
+    for (face, &component) in turned.faces.iter_mut().zip(&report.component_of) {
         if component != NO_COMPONENT && report.components[component as usize].inside_out {
             face.swap(1, 2);
         }
     }
-    report.components.iter().filter(|c| c.inside_out).count()
+    if inside_out(&structure(&turned)) >= before {
+        return 0;
+    }
+    *mesh = turned;
+    before
 }
