@@ -121,16 +121,8 @@ impl Hits {
                 if mask.any() {
                     let (t, primitive) = (L::load(&packet.t[start..]), L::load(&packet.primitive[start..]));
                     let mut load = rays.loads::<L>(first + start);
-                    let [r, g, b] = [0, 1, 2].map(
-                        #[inline(always)]
-                        |channel| L::load(&ways.kept[channel][start..]),
-                    );
-                    load.weight.attenuation = load.weight.attenuation * Rgb::new(r, g, b);
-                    let [before, after, outer] = [&ways.before, &ways.after, &ways.outer].map(
-                        #[inline(always)]
-                        |column| L::load(&column[start..]),
-                    );
-                    let face = Face { before, after, outer };
+                    load.weight.attenuation = load.weight.attenuation * ways.kept::<L>(start);
+                    let face = ways.face(start);
                     self.push(mask, first + start, packet.ways(start), t, primitive, &load, &face);
                 }
             }
@@ -149,6 +141,23 @@ fn ones(mut bits: u64) -> impl Iterator<Item = usize> {
 }
 
 impl Ways {
+    /// What has been let through, in lanes.
+    #[inline(always)]
+    fn kept<L: Lanes>(&self, start: usize) -> Rgb<L> {
+        let [r, g, b] = &self.kept;
+        Rgb::new(L::load(&r[start..]), L::load(&g[start..]), L::load(&b[start..]))
+    }
+
+    /// The faces that have been met, in lanes.
+    #[inline(always)]
+    fn face<L: Lanes>(&self, start: usize) -> Face<L> {
+        Face {
+            before: L::load(&self.before[start..]),
+            after: L::load(&self.after[start..]),
+            outer: L::load(&self.outer[start..]),
+        }
+    }
+
     fn start(&mut self, world: &World, packet: &mut Packet, ray: usize) {
         (self.after[ray], self.outer[ray], self.since[ray]) = (self.before[ray], 1.0, 0.0);
         for channel in &mut self.kept {

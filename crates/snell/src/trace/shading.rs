@@ -81,6 +81,7 @@ impl ShadowRays {
     }
 
     /// Follows the light straight through what is transparent; says which hits any of it reaches.
+    #[inline(always)]
     fn tint<L: Lanes>(
         &mut self,
         media: &mut Media<'_>,
@@ -91,7 +92,10 @@ impl ShadowRays {
     ) -> L::Mask {
         let (point, source, medium) = (hits.point(), hits.primitive(), hits.face().before);
         let (mut light, mut reached) = ([[0.0; MAX_WIDTH]; 3], 0);
-        for lane in (0..L::WIDTH).filter(|&lane| lit.test(lane)) {
+        for lane in 0..L::WIDTH {
+            if !lit.test(lane) {
+                continue;
+            }
             let way = Way { origin: point.lane(lane), dir: wi.lane(lane), source: source.lane(lane) };
             let passed = media.light_along(&way, distance.lane(lane), index(medium.lane(lane)) as u32);
             reached |= u32::from(passed != Rgb::gray(0.0)) << lane;
@@ -99,7 +103,8 @@ impl ShadowRays {
                 column[lane] = value;
             }
         }
-        self.light.push(L::Mask::first(L::WIDTH), light.map(|column| L::load(&column)));
+        let light = [L::load(&light[0]), L::load(&light[1]), L::load(&light[2])];
+        self.light.push(L::Mask::first(L::WIDTH), light);
         L::Mask::from_bits(reached)
     }
 

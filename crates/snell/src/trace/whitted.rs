@@ -71,12 +71,6 @@ pub(crate) fn answer<L: Lanes>(
         |m| if m.dyed { m.kd } else { Rgb::gray(1.0) },
     );
     let (clear, dye) = (white - ko, Rgb::select(outer, dye, white));
-    let child = |dir: Vec3<L>, medium: L, band: L, attenuation: Rgb<L>| {
-        let (source, parent, pixel) = (hits.primitive(), hits.ray(), hits.pixel());
-        let weight = Weight { attenuation, factor: white };
-        let load = Load { weight, t_min: zero, source, parent, pixel, medium, band };
-        (hits.active & attenuation.not_black(), Rays { origin: hits.point(), dir, load })
-    };
 
     let to = Directions::new(hits, relative_index(hits, media, None));
     let mut reflectance = Rgb::new(to.reflectance, to.reflectance, to.reflectance);
@@ -90,16 +84,25 @@ pub(crate) fn answer<L: Lanes>(
             let r = Rgb::new(to.reflectance, to.reflectance, to.reflectance);
             reflected = reflected + share * r;
             let weight = throughput * (clear * dye) * (share * (white - r));
-            let (sends, rays) = child(to.refracted, face.after, L::splat(number as f64), weight);
+            let (sends, rays) = child(hits, to.refracted, face.after, L::splat(number as f64), weight);
             queue.push(RayKind::Refracted, sends & splits & to.refracts, &rays);
         }
         reflectance = Rgb::select(splits, reflected, reflectance);
     }
     let band = hits.band();
-    let mirror = child(to.mirror, face.before, band, throughput * (ko * kr + clear * reflectance));
+    let mirror = child(hits, to.mirror, face.before, band, throughput * (ko * kr + clear * reflectance));
     let refracted_weight = throughput * (clear * dye) * (white - reflectance);
-    let (sends, refracted) = child(to.refracted, face.after, band, refracted_weight);
+    let (sends, refracted) = child(hits, to.refracted, face.after, band, refracted_weight);
     (contribution, mirror, (sends & to.refracts & goes_through & !splits, refracted))
+}
+
+/// A ray that leaves from each hit, and where it carries anything.
+#[inline(always)]
+fn child<L: Lanes>(hits: &Batch<'_, L>, dir: Vec3<L>, medium: L, band: L, attenuation: Rgb<L>) -> Leaving<L> {
+    let (source, parent, pixel) = (hits.primitive(), hits.ray(), hits.pixel());
+    let weight = Weight { attenuation, factor: Rgb::gray(1.0).splat() };
+    let load = Load { weight, t_min: L::splat(0.0), source, parent, pixel, medium, band };
+    (hits.active & attenuation.not_black(), Rays { origin: hits.point(), dir, load })
 }
 
 /// `eta_t / eta_i`, for the band of each ray, or for one that white rays split into.
@@ -113,6 +116,7 @@ fn relative_index<L: Lanes>(hits: &Batch<'_, L>, media: &Media<'_>, of: Option<u
 }
 
 /// Which rays are white and meet dispersion?
+#[inline(always)]
 fn splitting<L: Lanes>(hits: &Batch<'_, L>, media: &Media<'_>) -> L::Mask {
     let bits = (0..L::WIDTH).map(|lane| {
         let [before, after, band] = hits.media_of(lane);

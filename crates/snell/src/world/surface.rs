@@ -170,10 +170,13 @@ impl World {
             let smooth = if self.all_flat {
                 flat
             } else {
-                Vec3::from_fn(|lane| {
-                    let (point, dir, flat) = (point.lane(lane), dir.lane(lane), flat.lane(lane));
-                    self.smooth_normal(primitives[lane], corners[lane], point, dir).unwrap_or(flat)
-                })
+                Vec3::from_fn(
+                    #[inline(always)]
+                    |lane| {
+                        let (point, dir, flat) = (point.lane(lane), dir.lane(lane), flat.lane(lane));
+                        self.smooth_normal(primitives[lane], corners[lane], point, dir).unwrap_or(flat)
+                    },
+                )
             };
             let behind = flat.dot(dir).gt(L::splat(0.0));
             let (smooth, flat) = (Vec3::select(behind, -smooth, smooth), Vec3::select(behind, -flat, flat));
