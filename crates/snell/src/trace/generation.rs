@@ -2,7 +2,7 @@
 
 use super::camera::CameraRays;
 use super::hits::Hits;
-use super::interfaces::Ways;
+use super::interfaces::{FindInterfaces, Ways};
 use super::lecture::{self, Blend};
 use super::media::Media;
 use super::queue::{Generation, RayKind, RayQueue};
@@ -11,7 +11,7 @@ use super::statistics::{Statistics, StrayExits};
 use super::whitted;
 use crate::film::{Crop, Rgb};
 use crate::geometry::bvh::Packet;
-use crate::lanes::Lanes;
+use crate::lanes::{Kernel, Lanes};
 use crate::scene::Integrator;
 use crate::world::World;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -65,6 +65,27 @@ pub(crate) struct Tracer<'a, L, O> {
     /// The same without signs, which colours of single wavelengths have, and as the mean of the three channels.
     lost_sizes: Vec<f64>,
     lanes: std::marker::PhantomData<L>,
+}
+
+/// What the hits of a generation do in the physical model: a function of its own.
+struct Whitted<'b, 'a, L, O> {
+    tracer: &'b mut Tracer<'a, L, O>,
+    children: &'b mut RayQueue,
+}
+
+impl<K: Lanes, O> Kernel for Whitted<'_, '_, K, O> {
+    type Output = ();
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let Self { tracer, children } = self;
+        for start in (0..tracer.hits.len()).step_by(L::WIDTH) {
+            let batch = tracer.hits.batch::<L>(tracer.world, start);
+            let (contribution, mirror, refracted) = whitted::answer(&batch, &tracer.media, &mut tracer.bands);
+            children.push(RayKind::Mirror, mirror.0, &mirror.1);
+            tracer.refracted.push(RayKind::Refracted, refracted.0, &refracted.1);
+            tracer.hits.set_contribution(start, contribution);
+        }
+    }
 }
 
 impl<'a, L: Lanes, O: Observer> Tracer<'a, L, O> {
@@ -177,7 +198,14 @@ impl<'a, L: Lanes, O: Observer> Tracer<'a, L, O> {
             self.hits.find::<L>(self.world, rays, &mut self.packet);
         } else {
             let mut stray = StrayExits::default();
-            self.hits.find_interfaces::<L>(rays, &mut self.media, &mut self.ways, &mut self.packet, &mut stray);
+            L::call(FindInterfaces {
+                hits: &mut self.hits,
+                rays,
+                media: &mut self.media,
+                ways: &mut self.ways,
+                packet: &mut self.packet,
+                stray: &mut stray,
+            });
             stray.first_pixel = stray.first_pixel.map(|pixel| self.number_of(pixel as usize));
             self.statistics.stray.merge(&stray);
         }
@@ -187,19 +215,19 @@ impl<'a, L: Lanes, O: Observer> Tracer<'a, L, O> {
         let mut children = self.empty_queue();
         self.refracted.clear();
         self.bands.iter_mut().for_each(RayQueue::clear);
-        for start in (0..self.hits.len()).step_by(L::WIDTH) {
-            let batch = self.hits.batch::<L>(self.world, start);
-            let (contribution, mirror, refracted) = match blend {
-                Some(blend) => (
-                    lecture::contribution(blend, &batch),
-                    lecture::mirror_ray(blend, &batch),
-                    lecture::exit_ray(blend, &batch),
-                ),
-                None => whitted::answer(&batch, &self.media, &mut self.bands),
-            };
-            children.push(RayKind::Mirror, mirror.0, &mirror.1);
-            self.refracted.push(RayKind::Refracted, refracted.0, &refracted.1);
-            self.hits.set_contribution(start, contribution);
+        // A loop for each model: neither should have to make room for the other.
+        if let Some(blend) = blend {
+            for start in (0..self.hits.len()).step_by(L::WIDTH) {
+                let batch = self.hits.batch::<L>(self.world, start);
+                let contribution = lecture::contribution(blend, &batch);
+                let (sends_mirror, mirror) = lecture::mirror_ray(blend, &batch);
+                let (sends_exit, exit) = lecture::exit_ray(blend, &batch);
+                children.push(RayKind::Mirror, sends_mirror, &mirror);
+                self.refracted.push(RayKind::Refracted, sends_exit, &exit);
+                self.hits.set_contribution(start, contribution);
+            }
+        } else {
+            L::call(Whitted { tracer: self, children: &mut children });
         }
         children.append(&self.refracted);
         for band in &self.bands {

@@ -16,10 +16,11 @@ const T: usize = 3;
 const POINT: usize = 4;
 const WO: usize = 7;
 const ATTENUATION: usize = 10;
-/// Handles of the solids before and behind the face, and whether it is met from outside.
-const BEFORE: usize = 16;
-const AFTER: usize = 17;
-const BAND: usize = 19;
+
+/// Columns of the faces: handles of the solids before and behind each, whether it is met from outside, the band of the ray.
+const BEFORE: usize = 0;
+const AFTER: usize = 1;
+const BAND: usize = 3;
 
 /// In the column of primitives: nothing is there, only the background.
 pub(super) const SKY: f64 = -1.0;
@@ -33,9 +34,10 @@ const CONTRIBUTION: usize = 7;
 /// The hits of a generation, compacted, in the order of their rays.
 #[derive(Debug, Default)]
 pub(crate) struct Hits {
-    found: Columns<20>,
+    found: Columns<16>,
+    /// With real optics the faces that were met, and their geometric normals; else empty.
+    faces: Columns<4>,
     surface: Columns<10>,
-    /// Geometric normals, where they are not those of the surface.
     geometric: Columns<3>,
     /// Spheres that the rays may meet.
     seen: Few,
@@ -50,6 +52,7 @@ impl Hits {
     #[inline(always)]
     pub fn clear(&mut self) {
         self.found.clear();
+        self.faces.clear();
     }
 
     /// Finds the closest hits of all rays, and what surface is there.
@@ -67,7 +70,7 @@ impl Hits {
                 let none = Nearest::none(active, load.t_min, L::splat(f64::INFINITY), load.source);
                 let Nearest { hit, t, primitive, .. } = none.among(false, &seen, origin, dir);
                 if hit.any() {
-                    self.push(hit, start, (origin, dir), t, primitive, &load, &Face::opaque());
+                    self.push(hit, start, (origin, dir), t, primitive, &load);
                 }
             }
             self.seen = seen;
@@ -80,7 +83,7 @@ impl Hits {
                     if mask.any() {
                         let (t, primitive) = (L::load(&packet.t[start..]), L::load(&packet.primitive[start..]));
                         let (way, load) = (packet.ways(start), rays.loads(first + start));
-                        self.push(mask, first + start, way, t, primitive, &load, &Face::opaque());
+                        self.push(mask, first + start, way, t, primitive, &load);
                     }
                 }
             }
@@ -90,7 +93,6 @@ impl Hits {
 
     /// Appends the hits of some rays, from a row of their queue on.
     #[inline(always)]
-    #[allow(clippy::too_many_arguments, reason = "a hit in lanes is many numbers, and nobody else wants them together")]
     pub(super) fn push<L: Lanes>(
         &mut self,
         hit: L::Mask,
@@ -99,19 +101,16 @@ impl Hits {
         t: L,
         primitive: L,
         load: &Load<L>,
-        face: &Face<L>,
     ) {
-        let (row, pixel, wo) = (L::ramp(row), load.pixel, -d);
-        let p = o + d * L::select(primitive.eq(L::splat(SKY)), L::splat(0.0), t);
+        let (row, pixel, p, wo) = (L::ramp(row), load.pixel, o + d * t, -d);
         let Weight { attenuation: a, factor: f } = load.weight;
-        let Face { before, after, outer } = *face;
-        self.found.push(
-            hit,
-            [
-                row, pixel, primitive, t, p.x, p.y, p.z, wo.x, wo.y, wo.z, a.r, a.g, a.b, f.r, f.g, f.b, before, after,
-                outer, load.band,
-            ],
-        );
+        self.found.push(hit, [row, pixel, primitive, t, p.x, p.y, p.z, wo.x, wo.y, wo.z, a.r, a.g, a.b, f.r, f.g, f.b]);
+    }
+
+    /// Appends the faces of the hits that were appended last.
+    #[inline(always)]
+    pub(super) fn push_faces<L: Lanes>(&mut self, hit: L::Mask, face: &Face<L>, band: L) {
+        self.faces.push(hit, [face.before, face.after, face.outer, band]);
     }
 
     #[inline(always)]
@@ -130,14 +129,14 @@ impl Hits {
             let [x, y, z] = self.found.group(POINT, start);
             let [wx, wy, wz] = self.found.group(WO, start);
             let (point, dir) = (Vec3::new(x, y, z), -Vec3::new(wx, wy, wz));
-            let [before, after, outer] = self.found.group::<L, 3>(BEFORE, start);
-            let side = Side {
-                within: outer.eq(L::splat(0.0)),
-                either: if real_optics { before.eq(after) } else { L::Mask::from_bits(0) },
-            };
-            let sky = self.found.lanes::<L>(PRIMITIVE, start).eq(L::splat(SKY));
+            let (mut side, mut there) = (Side::outside(), L::Mask::first(self.len() - start));
+            if real_optics {
+                let [before, after, outer] = self.faces.group::<L, 3>(BEFORE, start);
+                side = Side { within: outer.eq(L::splat(0.0)), either: before.eq(after) };
+                there = there & !self.found.lanes::<L>(PRIMITIVE, start).eq(L::splat(SKY));
+            }
             let nothing = Vec3::new(wx, wy, wz);
-            let [normal, geometric] = if (!sky & L::Mask::first(self.len() - start)).any() {
+            let [normal, geometric] = if there.any() {
                 world.facing_normals::<L>(&primitives, point, dir, &side)
             } else {
                 [nothing, nothing]
@@ -207,8 +206,10 @@ impl Hits {
     /// The hits from one row on.
     #[inline(always)]
     pub fn batch<'a, L: Lanes>(&'a self, world: &'a World, start: usize) -> Batch<'a, L> {
-        let there = !self.found.lanes::<L>(PRIMITIVE, start).eq(L::splat(SKY));
-        let active = L::Mask::first(self.len() - start) & there;
+        let mut active = L::Mask::first(self.len() - start);
+        if self.faces.len() > 0 {
+            active = active & !self.found.lanes::<L>(PRIMITIVE, start).eq(L::splat(SKY));
+        }
         let material = self.surface.lanes::<L>(MATERIAL, start);
         let first = self.surface.at(MATERIAL, start);
         let one_material = !(active & !material.eq(L::splat(first))).any();
@@ -235,14 +236,6 @@ pub(crate) struct Face<L: Lanes> {
     pub after: L,
     /// 1 where the ray arrives from outside, else 0.
     pub outer: L,
-}
-
-impl<L: Lanes> Face<L> {
-    /// A face that lets nothing through.
-    #[inline(always)]
-    pub fn opaque() -> Self {
-        Self { before: L::splat(0.0), after: L::splat(0.0), outer: L::splat(1.0) }
-    }
 }
 
 /// The coefficients of a surface that decide how light goes on.
@@ -292,19 +285,19 @@ impl<L: Lanes> Batch<'_, L> {
 
     #[inline(always)]
     pub fn face(&self) -> Face<L> {
-        let [before, after, outer] = self.hits.found.group(BEFORE, self.start);
+        let [before, after, outer] = self.hits.faces.group(BEFORE, self.start);
         Face { before, after, outer }
     }
 
     /// The handles of the solids before and behind the face of one hit, and the band of the ray.
     pub fn media_of(&self, lane: usize) -> [u32; 3] {
         let row = (self.start + lane).min(self.hits.len() - 1);
-        [BEFORE, AFTER, BAND].map(|column| index(self.hits.found.at(column, row)) as u32)
+        [BEFORE, AFTER, BAND].map(|column| index(self.hits.faces.at(column, row)) as u32)
     }
 
     #[inline(always)]
     pub fn band(&self) -> L {
-        self.hits.found.lanes(BAND, self.start)
+        self.hits.faces.lanes(BAND, self.start)
     }
 
     #[inline(always)]

@@ -13,7 +13,7 @@ use super::statistics::StrayExits;
 use crate::film::Rgb;
 use crate::geometry::Vec3;
 use crate::geometry::bvh::{PACKET, Packet};
-use crate::lanes::{Lanes, Mask, index};
+use crate::lanes::{Kernel, Lanes, Mask, index};
 use crate::optics::absorption::transmittance_rgb;
 use crate::world::{NO_SOLID, World};
 
@@ -67,19 +67,23 @@ struct Place {
     enters: bool,
 }
 
-impl Hits {
-    /// Finds the next interface of all rays, or the background.
+/// Finds the next interface of all rays, or the background. A function of its own: the lecture's models have no use for it.
+pub(crate) struct FindInterfaces<'b, 'a, G> {
+    pub hits: &'b mut Hits,
+    pub rays: &'b G,
+    pub media: &'b mut Media<'a>,
+    pub ways: &'b mut Ways,
+    pub packet: &'b mut Packet,
+    pub stray: &'b mut StrayExits,
+}
+
+impl<G: Generation> Kernel for FindInterfaces<'_, '_, G> {
+    type Output = ();
     #[inline(always)]
-    pub fn find_interfaces<L: Lanes>(
-        &mut self,
-        rays: &impl Generation,
-        media: &mut Media<'_>,
-        ways: &mut Ways,
-        packet: &mut Packet,
-        stray: &mut StrayExits,
-    ) {
+    fn run<L: Lanes>(self) {
+        let Self { hits, rays, media, ways, packet, stray } = self;
         let world = media.world();
-        self.clear();
+        hits.clear();
         packet.two_sided = true;
         for first in (0..rays.len()).step_by(PACKET) {
             let all = rays.fill::<L>(packet, first, world.tree.has_triangles());
@@ -122,12 +126,14 @@ impl Hits {
                     let (t, primitive) = (L::load(&packet.t[start..]), L::load(&packet.primitive[start..]));
                     let mut load = rays.loads::<L>(first + start);
                     load.weight.attenuation = load.weight.attenuation * ways.kept::<L>(start);
-                    let face = ways.face(start);
-                    self.push(mask, first + start, packet.ways(start), t, primitive, &load, &face);
+                    // The background is nowhere.
+                    let at = L::select(primitive.eq(L::splat(SKY)), L::splat(0.0), t);
+                    hits.push(mask, first + start, packet.ways(start), at, primitive, &load);
+                    hits.push_faces(mask, &ways.face(start), load.band);
                 }
             }
         }
-        self.look_up_surfaces::<L>(world);
+        hits.look_up_surfaces::<L>(world);
     }
 }
 

@@ -68,7 +68,12 @@ impl ShadowRays {
                     lit = self.tint(media, &batch, lit, wi, distance);
                 } else if let Some(spheres) = world.tree.few() {
                     let nothing = Nearest::none(lit, L::splat(self.t_min), distance, source);
-                    lit = lit & !nothing.among(real_optics, spheres, point, wi).hit;
+                    let hit = if real_optics {
+                        nothing.among(true, spheres, point, wi).hit
+                    } else {
+                        nothing.among(false, spheres, point, wi).hit
+                    };
+                    lit = lit & !hit;
                 } else {
                     let (row, p) = (L::ramp(start), point);
                     self.rays.push(lit, [row, p.x, p.y, p.z, wi.x, wi.y, wi.z, distance, source]);

@@ -283,9 +283,10 @@ impl World {
             let material = material_of(f, &placed);
             used[material as usize] = true;
             triangles.faces.push(face.map(|v| v + base));
-            surfaces.solid_of.resize(surfaces.material_of.len(), NO_SOLID);
             surfaces.material_of.push(material);
             if let Some(solids) = &solids {
+                // Nothing is written down of what lets no light through.
+                surfaces.solid_of.resize(surfaces.material_of.len() - 1, NO_SOLID);
                 let transparent = self.materials[material as usize].is_transparent();
                 let solid = if transparent { solids.solid_of[f] } else { NO_SOLID };
                 surfaces.solid_of.push(if solid == NO_SOLID { NO_SOLID } else { first_solid + solid });

@@ -33,6 +33,14 @@ pub(crate) struct Side<L: Lanes> {
     pub either: L::Mask,
 }
 
+impl<L: Lanes> Side<L> {
+    /// All from outside.
+    #[inline(always)]
+    pub fn outside() -> Self {
+        Self { within: L::Mask::from_bits(0), either: L::Mask::from_bits(0) }
+    }
+}
+
 /// A mesh in one of its places.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Placement {
@@ -154,8 +162,10 @@ impl World {
             let center = |lane: usize| self.spheres.get(primitives[lane]).map_or(Vec3::default(), |s| s.center);
             let one = primitives[..L::WIDTH].iter().all(|&p| p == primitives[0]);
             normal = normal - if one { center(0).splat() } else { Vec3::from_fn(center) };
-            let inward = side.within | (side.either & normal.dot(dir).gt(L::splat(0.0)));
-            normal = Vec3::select(inward, -normal, normal);
+            if (side.within | side.either).any() {
+                let inward = side.within | (side.either & normal.dot(dir).gt(L::splat(0.0)));
+                normal = Vec3::select(inward, -normal, normal);
+            }
         }
         if (!spheres).any() {
             // A lane with a sphere gets a triangle without area, and is not looked at.
