@@ -91,8 +91,8 @@ pub fn render(world: &World, options: &Options<'_>) -> Result<Rendered, RenderEr
     Ok(Rendered { film, statistics })
 }
 
-/// Renders a picture in place of another one. Where both are of the same size its memory is used again: fetching as much
-/// from the system takes a tenth of the time of a simple picture.
+/// Renders a picture in place of another one. Where both are of the same size its memory is used again, and need not
+/// be fetched from the system.
 ///
 /// # Errors
 /// As [`render`]; the film may be of any size then.

@@ -88,7 +88,7 @@ impl<'a> Media<'a> {
         self.intern(balance.into_iter().filter(|&(_, out)| out > 0).map(|(solid, _)| solid).collect())
     }
 
-    /// Forgets all sets but those in which camera rays start from: handles are good for a tile.
+    /// Forgets all sets but that of the eye and the empty one: handles are good for a tile.
     pub fn forget(&mut self) {
         let kept = self.eye.unwrap_or(OUTSIDE) as usize + 1;
         self.sets.truncate(kept);
