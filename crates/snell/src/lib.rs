@@ -59,6 +59,7 @@ pub mod optics;
 pub mod rays;
 pub mod render;
 pub mod scene;
+pub mod texture;
 mod threads;
 pub mod trace;
 pub mod world;
