@@ -1,7 +1,7 @@
 //! Wavefront MTL: materials, read with the rule of the year.
 
 use crate::report::{Report, Source};
-use crate::words::{Line, lines};
+use crate::words::{Line, Word, lines, number};
 use snell::film::Rgb;
 use snell::scene::{LARGEST_NUMBER, Material, WarningCode};
 
@@ -17,6 +17,8 @@ pub struct MtlMaterial {
     exponent: Option<f64>,
     /// `illum 3`.
     mirrors: bool,
+    /// The picture of `map_Kd`, which colours the diffuse part, by the name that the file gives it; without options.
+    pub map_kd: Option<String>,
 }
 
 /// How a year reads the materials of polygons.
@@ -97,8 +99,17 @@ pub fn parse_mtl(source: &Source) -> Result<(Vec<MtlMaterial>, Vec<Report>), Rep
             }
             // Read by no integrator yet: emission, opacity, index, and their relatives in newer exporters.
             "Ke" | "Ni" | "d" | "Tr" | "Tf" | "Pr" | "Pm" | "Ps" | "Pc" | "Pcr" | "aniso" | "anisor" | "sharpness" => {}
+            "map_Kd" | "map_kd" => {
+                let Map { file, options } = Map::of(&line);
+                warnings.push(not_drawn(&line, file));
+                if let Some(options) = options {
+                    let message = format!("the options `{options}` of the texture `{file}` are ignored");
+                    warnings.push(Report::warning(WarningCode::TextureIgnored, message).at(source, line.range()));
+                }
+                material.map_kd = Some(file.to_owned()).filter(|file| !file.is_empty());
+            }
             _ if keyword.starts_with("map_") || matches!(keyword, "bump" | "disp" | "decal" | "refl" | "norm") => {
-                warnings.push(texture(&line));
+                warnings.push(not_drawn(&line, Map::of(&line).file));
             }
             _ => {
                 let message = format!("unknown keyword `{keyword}` in a material: line ignored");
@@ -109,8 +120,40 @@ pub fn parse_mtl(source: &Source) -> Result<(Vec<MtlMaterial>, Vec<Report>), Rep
     Ok((materials, warnings))
 }
 
-fn texture(line: &Line<'_>) -> Report {
-    let file = line.rest.last().map_or("", |w| w.text);
+/// What stands behind the keyword of a texture.
+#[derive(Debug, PartialEq)]
+struct Map<'a> {
+    /// May have spaces in its name; empty if there is none.
+    file: &'a str,
+    options: Option<&'a str>,
+}
+
+impl<'a> Map<'a> {
+    fn of(line: &Line<'a>) -> Self {
+        let (words, source) = (&line.rest, line.source);
+        let text = |words: &[Word<'a>]| match (words.first(), words.last()) {
+            (Some(first), Some(last)) => &source.text[first.range.start..last.range.end],
+            _ => "",
+        };
+        let mut start = 0;
+        while let Some(option) = words.get(start).map(|w| w.text).filter(|w| w.starts_with('-')) {
+            let values = &words[start + 1..];
+            let most = match option {
+                "-blendu" | "-blendv" | "-boost" | "-bm" | "-cc" | "-clamp" | "-imfchan" | "-texres" | "-type" => 1,
+                "-mm" => 2,
+                // One to three numbers.
+                "-o" | "-s" | "-t" => values.iter().take(3).take_while(|w| number(w).is_some()).count(),
+                // Of an option that nobody knows, the last word is the file.
+                _ => values.len().saturating_sub(1),
+            };
+            start += 1 + most.min(values.len());
+        }
+        let (options, file) = words.split_at(start);
+        Self { file: text(file), options: (!options.is_empty()).then(|| text(options)) }
+    }
+}
+
+fn not_drawn(line: &Line<'_>, file: &str) -> Report {
     let folder = std::path::Path::new(&*line.source.name).parent().unwrap_or(std::path::Path::new(""));
     let missing = if folder.join(file).is_file() { "" } else { ", and the file is missing" };
     let message = format!("the texture `{file}` is not drawn: only the colours of its material are{missing}");
@@ -171,10 +214,37 @@ mod tests {
         assert!(parse_mtl(&Source::new("m.mtl", "newmtl a\nKd 1 1\n")).unwrap_err().message.contains("read 2"));
     }
 
+    #[test]
+    fn a_texture_is_a_file_behind_its_options() {
+        for (line, file, options) in [
+            ("map_Kd wall.png", Some("wall.png"), None),
+            ("map_Kd  my  old wall.png  # not new", Some("my  old wall.png"), None),
+            ("map_Kd tex\\wall.png", Some("tex\\wall.png"), None),
+            ("map_Kd -s 1 1 1 wall.png", Some("wall.png"), Some("-s 1 1 1")),
+            (
+                "map_Kd -s 2 -o 0.5 -0.5 -clamp on -mm 0 1 a wall.png",
+                Some("a wall.png"),
+                Some("-s 2 -o 0.5 -0.5 -clamp on -mm 0 1"),
+            ),
+            ("map_Kd -s 1 1 1 1.png", Some("1.png"), Some("-s 1 1 1")),
+            ("map_Kd -odd 3 x wall.png", Some("wall.png"), Some("-odd 3 x")),
+            ("map_Kd -clamp", None, Some("-clamp")),
+            ("map_Kd", None, None),
+            ("map_Ks wall.png", None, None),
+        ] {
+            let text = format!("newmtl a\n{line}\n");
+            let (materials, warnings) = parse_mtl(&Source::new("m.mtl", text.as_str())).unwrap();
+            assert_eq!(materials[0].map_kd.as_deref(), file, "{line}");
+            let ignored = warnings.iter().find(|w| w.message.contains("options"));
+            assert_eq!(ignored.is_some(), options.is_some(), "{line}");
+            assert!(ignored.is_none_or(|w| w.message.contains(&format!("`{}`", options.unwrap()))), "{line}");
+        }
+    }
+
     proptest! {
         #[test]
         fn no_text_breaks_the_reader(words in prop::collection::vec(
-            prop::sample::select(vec!["newmtl", "Ka", "Kd", "Ns", "illum", "map_Kd", "1", "-.5", "nan", "x", "\n", "#"]), 0..60,
+            prop::sample::select(vec!["newmtl", "Ka", "Kd", "Ns", "illum", "map_Kd", "-s", "-clamp", "-x", "1", "-.5", "nan", "x", "\n", "#"]), 0..60,
         )) {
             let _ = parse_mtl(&Source::new("m.mtl", words.join(" ")));
         }

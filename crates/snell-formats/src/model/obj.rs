@@ -1,9 +1,9 @@
-//! Wavefront OBJ: vertices, faces and the names of their materials.
+//! Wavefront OBJ: vertices, texture coordinates, faces and the names of their materials.
 
 use super::polygon::Polygons;
 use crate::report::{Report, Source};
 use crate::words::{Word, number, words};
-use snell::geometry::{TriangleMesh, Vec3};
+use snell::geometry::{NO_UVS, TriangleMesh, Vec3};
 use snell::scene::WarningCode;
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
@@ -19,15 +19,16 @@ pub struct ObjModel {
     pub warnings: Vec<Report>,
 }
 
-/// Keywords that say nothing about the surface as Snell draws it: texture coordinates, normals (smoothing is the
-/// scene's own), groups, lines and points.
-const IGNORED: &[&str] =
-    &["vn", "vt", "vp", "o", "g", "s", "l", "p", "mg", "usemap", "maplib", "shadow_obj", "trace_obj"];
+/// Keywords that say nothing about the surface as Snell draws it: normals (smoothing is the scene's own), groups, lines
+/// and points.
+const IGNORED: &[&str] = &["vn", "vp", "o", "g", "s", "l", "p", "mg", "usemap", "maplib", "shadow_obj", "trace_obj"];
 
-/// Reads an OBJ file. Polygons become triangles.
+/// Reads an OBJ file. Polygons become triangles. A face has texture coordinates if each of its corners has; of `vt u v w`
+/// the third number is not kept.
 ///
 /// # Errors
-/// A number that is none, an index out of range, a face with fewer than three corners.
+/// A number that is none, an index of a vertex or of texture coordinates out of range, a face with fewer than three
+/// corners.
 pub fn parse_obj(source: &Source) -> Result<ObjModel, Report> {
     let mut reader = Reader {
         source,
@@ -37,6 +38,7 @@ pub fn parse_obj(source: &Source) -> Result<ObjModel, Report> {
         slot: None,
         later: Vec::new(),
         corners: Vec::new(),
+        corner_uvs: Vec::new(),
         ends: Vec::new(),
         unknown: HashSet::new(),
         warnings: Vec::new(),
@@ -66,14 +68,35 @@ struct Reader<'a> {
     slots: HashMap<String, u32>,
     /// Slot of the current `usemtl`.
     slot: Option<u32>,
-    /// Vertices that a face named before they came, to be checked at the end.
-    later: Vec<(u32, Range<usize>)>,
+    /// What a face named before it came, to be checked at the end.
+    later: Vec<(Kind, u32, Range<usize>)>,
     /// Corners of all polygons, and where each ends, with its slot. They become triangles when all vertices are there.
     corners: Vec<u32>,
+    /// The texture coordinates of each corner, or [`NO_UV`].
+    corner_uvs: Vec<u32>,
     ends: Vec<(usize, u32)>,
     unknown: HashSet<String>,
     warnings: Vec<Report>,
 }
+
+/// What corners of faces name by numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Kind {
+    Vertex,
+    Uv,
+}
+
+impl Kind {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Vertex => "vertex",
+            Self::Uv => "`vt`",
+        }
+    }
+}
+
+/// Of a corner without texture coordinates.
+const NO_UV: u32 = NO_UVS[0];
 
 impl Reader<'_> {
     fn error(&self, word: &Word<'_>, message: String) -> Report {
@@ -83,6 +106,7 @@ impl Reader<'_> {
     fn line(&mut self, keyword: &Word<'_>, rest: &[Word<'_>]) -> Result<(), Report> {
         match keyword.text {
             "v" => self.vertex(keyword, rest),
+            "vt" => self.uv(keyword, rest),
             "f" | "fo" => self.face(keyword, rest),
             "usemtl" => {
                 self.use_material(&joined(self.source, rest));
@@ -109,12 +133,23 @@ impl Reader<'_> {
         let [x, y, z, ..] = rest else {
             return Err(self.error(keyword, format!("`v` takes 3 numbers, read {}", rest.len())));
         };
-        let coordinate = |word: &Word<'_>| {
-            number(word).ok_or_else(|| self.error(word, format!("expected a number, read `{}`", word.text)))
-        };
-        let vertex = Vec3::new(coordinate(x)?, coordinate(y)?, coordinate(z)?);
+        let vertex = Vec3::new(self.coordinate(x)?, self.coordinate(y)?, self.coordinate(z)?);
         self.mesh.vertices.push(vertex);
         Ok(())
+    }
+
+    fn uv(&mut self, keyword: &Word<'_>, rest: &[Word<'_>]) -> Result<(), Report> {
+        let Some(u) = rest.first() else {
+            return Err(self.error(keyword, "`vt` takes 1 to 3 numbers, read 0".to_owned()));
+        };
+        // Of a texture that is a line `v` is left out.
+        let v = rest.get(1).map_or(Ok(0.0), |v| self.coordinate(v))?;
+        self.mesh.uvs.push([self.coordinate(u)?, v]);
+        Ok(())
+    }
+
+    fn coordinate(&self, word: &Word<'_>) -> Result<f64, Report> {
+        number(word).ok_or_else(|| self.error(word, format!("expected a number, read `{}`", word.text)))
     }
 
     fn use_material(&mut self, name: &str) {
@@ -131,8 +166,15 @@ impl Reader<'_> {
             return Err(self.error(keyword, format!("a face has at least 3 corners, read {}", rest.len())));
         }
         for word in rest {
-            let index = self.corner(word)?;
-            self.corners.push(index);
+            // A corner is `a`, `a/b`, `a//c` or `a/b/c`.
+            let mut parts = word.text.split('/');
+            let vertex = self.index(Kind::Vertex, parts.next().unwrap_or_default(), word)?;
+            let uv = match parts.next() {
+                None | Some("") => NO_UV,
+                Some(text) => self.index(Kind::Uv, text, word)?,
+            };
+            self.corners.push(vertex);
+            self.corner_uvs.push(uv);
         }
         if self.slot.is_none() {
             self.use_material("");
@@ -142,44 +184,63 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// The vertex of a corner `a`, `a/b`, `a//c` or `a/b/c`: counted from 1, or from the end if negative.
-    fn corner(&mut self, word: &Word<'_>) -> Result<u32, Report> {
-        let text = word.text.split('/').next().unwrap_or_default();
-        let count = self.mesh.vertices.len() as i64;
+    fn count(&self, kind: Kind) -> usize {
+        match kind {
+            Kind::Vertex => self.mesh.vertices.len(),
+            Kind::Uv => self.mesh.uvs.len(),
+        }
+    }
+
+    /// A number in a corner: counted from 1, or from the end if negative.
+    fn index(&mut self, kind: Kind, text: &str, word: &Word<'_>) -> Result<u32, Report> {
+        let count = self.count(kind) as i64;
         let Ok(index) = text.parse::<i64>() else {
-            return Err(self.error(word, format!("expected the number of a vertex, read `{}`", word.text)));
+            let message = format!("expected the number of a {}, read `{}`", kind.name(), word.text);
+            return Err(self.error(word, message));
         };
         let from_zero = if index < 0 { count.saturating_add(index) } else { index - 1 };
         match u32::try_from(from_zero) {
-            Ok(vertex) if from_zero < count => Ok(vertex),
+            Ok(number) if from_zero < count => Ok(number),
             // A vertex may come after the face that names it.
-            Ok(vertex) if index > 0 => {
-                self.later.push((vertex, word.range.clone()));
-                Ok(vertex)
+            Ok(number) if index > 0 => {
+                self.later.push((kind, number, word.range.clone()));
+                Ok(number)
             }
-            _ => Err(self.out_of_range(index, word.range.clone())),
+            _ => Err(self.out_of_range(kind, index, word.range.clone())),
         }
     }
 
-    fn out_of_range(&self, index: i64, range: Range<usize>) -> Report {
-        let count = self.mesh.vertices.len();
+    fn out_of_range(&self, kind: Kind, index: i64, range: Range<usize>) -> Report {
+        let (count, name) = (self.count(kind), kind.name());
         let so_far = if index <= 0 { " so far" } else { "" };
-        Report::error(format!("there is no vertex {index}: the file has {count}{so_far}"))
+        let help = match kind {
+            Kind::Vertex => "vertices are counted from 1, or backwards from -1, the latest",
+            Kind::Uv => {
+                "lines `vt` are counted from 1, or backwards from -1, the latest; a corner without is `1` or `1//1`"
+            }
+        };
+        Report::error(format!("there is no {name} {index}: the file has {count}{so_far}"))
             .at(self.source, range)
-            .help("vertices are counted from 1, or backwards from -1, the latest")
+            .help(help)
     }
 
     fn finish(mut self) -> Result<ObjModel, Report> {
-        let count = self.mesh.vertices.len();
-        if let Some((vertex, range)) = self.later.iter().find(|(v, _)| *v as usize >= count) {
-            return Err(self.out_of_range(i64::from(*vertex) + 1, range.clone()));
+        if let Some((kind, number, range)) = self.later.iter().find(|(kind, n, _)| *n as usize >= self.count(*kind)) {
+            return Err(self.out_of_range(*kind, i64::from(*number) + 1, range.clone()));
         }
+        let textured = self.corner_uvs.iter().any(|&uv| uv != NO_UV);
         let mut polygons = Polygons::default();
         let mut start = 0;
         for &(end, slot) in &self.ends {
-            let triangles = polygons.triangles(&self.corners[start..end], &self.mesh.vertices);
+            let (corners, uvs) = (&self.corners[start..end], &self.corner_uvs[start..end]);
+            let triangles = polygons.places(corners, &self.mesh.vertices);
             self.mesh.face_slots.extend(triangles.iter().map(|_| slot));
-            self.mesh.faces.extend(triangles);
+            self.mesh.faces.extend(triangles.iter().map(|t| t.map(|i| corners[i as usize])));
+            if textured {
+                let whole = !uvs.contains(&NO_UV);
+                let of = |t: &[u32; 3]| if whole { t.map(|i| uvs[i as usize]) } else { NO_UVS };
+                self.mesh.face_uvs.extend(triangles.iter().map(of));
+            }
             start = end;
         }
         if self.mesh.faces.is_empty() {
@@ -213,17 +274,49 @@ mod tests {
     fn every_form_of_a_face() {
         for face in [
             "1 2 3 4",
-            "1/9 2/9 3/9 4/9",
+            "1/1 2/1 3/1 4/1",
+            "1/ 2/ 3/ 4/",
             "1//9 2//9 3//9 4//9",
-            "1/9/9 2/9/9 3/9/9 4/9/9",
+            "1/1/9 2/1/9 3/1/9 4/1/9",
             "-4 -3 -2 -1",
             "1 2 \\\n 3 4",
             "1 2\\\n3 4 # a comment joins nothing \\",
         ] {
-            assert_eq!(read(&format!("{SQUARE}f {face}")).mesh.faces, [[0, 1, 2], [0, 2, 3]], "{face}");
+            assert_eq!(read(&format!("{SQUARE}vt 0\nf {face}")).mesh.faces, [[0, 1, 2], [0, 2, 3]], "{face}");
         }
         assert_eq!(read(&format!("# C:\\models\\\n{SQUARE}f 1 2 3")).mesh.vertices.len(), 4, "a comment joins nothing");
         assert_eq!(read(&format!("f 1 2 3\n{SQUARE}")).mesh.faces, [[0, 1, 2]], "vertices may come later");
+    }
+
+    #[test]
+    fn faces_have_texture_coordinates_if_all_their_corners_have() {
+        let text = format!("{SQUARE}vt .5 -1 7\nvt 2\nf 1/1 2/2 3/-1 4/4/1\nvt 3 3\nf 1/1 2 3/1\nvt 4 4\nf 1 2 3\n");
+        let mesh = read(&text).mesh;
+        assert_eq!(mesh.uvs, [[0.5, -1.0], [2.0, 0.0], [3.0, 3.0], [4.0, 4.0]]);
+        assert_eq!(mesh.face_uvs, [[0, 1, 1], [0, 1, 3], NO_UVS, NO_UVS], "the fourth came after its face");
+        assert_eq!(mesh.corner_uvs(1), Some([[0.5, -1.0], [2.0, 0.0], [4.0, 4.0]]));
+        assert_eq!(mesh.corner_uvs(2), None);
+        assert_eq!(read(&format!("{SQUARE}vt 1 1\nf 1 2 3\nf 1//1 2//1 3//1")).mesh.face_uvs, [[0; 3]; 0]);
+    }
+
+    /// Corners of a polygon that has one vertex twice, with another place on the texture each time.
+    #[test]
+    fn ears_keep_the_texture_of_their_corners() {
+        // The arrow head of the test below, and around a slit to a hole that has no room.
+        let vertices = "v 2 -1 0\nv 0 3 0\nv -2 -1 0\nv 0 0 0\nv 1 0 0\n";
+        let uvs: String = (1..=6).map(|i| format!("vt {i} 0\n")).collect();
+        let mesh = read(&format!("{vertices}{uvs}f 1/1 2/2 3/3 4/4 5/5 4/6\n")).mesh;
+        let polygon = [0, 1, 2, 3, 4, 3];
+        assert_eq!(mesh.faces.len(), 4);
+        for (face, uvs) in mesh.faces.iter().zip(&mesh.face_uvs) {
+            assert_eq!(
+                uvs.map(|uv| polygon[uv as usize]),
+                *face,
+                "each vertex with a number that it has in the polygon"
+            );
+        }
+        let used = |uv: u32| mesh.face_uvs.iter().flatten().any(|&u| u == uv);
+        assert!((0..6).all(used), "{:?}", mesh.face_uvs);
     }
 
     #[test]
@@ -268,6 +361,13 @@ mod tests {
             (format!("{SQUARE}f 1 2 99999999999999999999\n"), 5, "number of a vertex"),
             (format!("{SQUARE}f 1 2\n"), 5, "at least 3 corners, read 2"),
             (format!("{SQUARE}f 1 x 3\n"), 5, "read `x`"),
+            (format!("{SQUARE}vt 0 0\nf 1/1 2/1 3/2\n"), 6, "no `vt` 2: the file has 1"),
+            (format!("{SQUARE}vt 0 0\nf 1/1 2/1 3/0\n"), 6, "no `vt` 0"),
+            (format!("{SQUARE}vt 0 0\nf 1/1 2/1 3/-2\n"), 6, "no `vt` -2: the file has 1 so far"),
+            (format!("{SQUARE}f 1/x 2/1 3/1\n"), 5, "number of a `vt`, read `1/x`"),
+            (format!("{SQUARE}f 1/4294967296 2/1 3/1\n"), 5, "no `vt` 4294967296"),
+            ("vt\n".to_owned(), 1, "1 to 3 numbers, read 0"),
+            ("vt 0 inf\n".to_owned(), 1, "read `inf`"),
             ("v 1 2\n".to_owned(), 1, "3 numbers, read 2"),
             ("v 1 2 nan\n".to_owned(), 1, "read `nan`"),
             (SQUARE.to_owned(), 1, "no faces"),
@@ -282,13 +382,16 @@ mod tests {
     proptest! {
         #[test]
         fn no_text_breaks_the_reader(words in prop::collection::vec(
-            prop::sample::select(vec!["v", "f", "usemtl", "mtllib", "s", "1", "2", "-1", "0", "3/1", "1e308", "\\", "\n", "\r\n", "#", "é"]),
+            prop::sample::select(vec!["v", "vt", "f", "usemtl", "mtllib", "s", "1", "2", "-1", "0", "3/1", "1/-1", "2//2", "1e308", "\\", "\n", "\r\n", "#", "é"]),
             0..120,
         )) {
             if let Ok(model) = parse_obj(&Source::new("m.obj", words.join(" "))) {
                 let count = model.mesh.vertices.len();
                 prop_assert!(model.mesh.faces.iter().flatten().all(|&v| (v as usize) < count));
                 prop_assert_eq!(model.mesh.faces.len(), model.mesh.face_slots.len());
+                prop_assert!(model.mesh.face_uvs.is_empty() || model.mesh.face_uvs.len() == model.mesh.faces.len());
+                let uvs = model.mesh.face_uvs.iter().filter(|uvs| **uvs != NO_UVS).flatten();
+                prop_assert!(uvs.copied().all(|uv| (uv as usize) < model.mesh.uvs.len()));
             }
         }
     }

@@ -7,7 +7,8 @@ use crate::words::{Word, number, words};
 use snell::geometry::{TriangleMesh, Vec3};
 use std::ops::Range;
 
-/// Reads a PLY file: the elements `vertex` (`x`, `y`, `z`), `face` and `tristrips` (lists `vertex_indices` or
+/// Reads a PLY file: the elements `vertex` (`x`, `y`, `z`, and texture coordinates `s`, `t`, or `u`, `v`, or `texture_u`,
+/// `texture_v`), `face` and `tristrips` (lists `vertex_indices` or
 /// `vertex_index`); others are passed over. Polygons become triangles. In a strip, −1 starts anew, and triangles with two
 /// equal corners only lead on to the next.
 ///
@@ -237,6 +238,7 @@ fn read_elements(header: &Source, elements: &[Element], numbers: &mut impl Numbe
             }
             _ => None,
         };
+        let uvs = UV_NAMES.iter().find_map(|&[u, v]| Some([place(u)?, place(v)?])).filter(|_| positions.is_some());
         let strips = element.name == "tristrips";
         let mut row = vec![0.0; element.properties.len()];
         for _ in 0..element.count {
@@ -273,6 +275,14 @@ fn read_elements(header: &Source, elements: &[Element], numbers: &mut impl Numbe
                 }
                 mesh.vertices.push(vertex);
             }
+            if let Some(uvs) = uvs {
+                let uv = uvs.map(|i| row[i]);
+                if !uv.iter().all(|c| c.is_finite()) {
+                    let [u, v] = uv;
+                    return Err(numbers.error(format!("texture coordinates are not finite: {u} {v}")));
+                }
+                mesh.uvs.push(uv);
+            }
         }
     }
     let mut triangulate = Polygons::default();
@@ -290,8 +300,17 @@ fn read_elements(header: &Source, elements: &[Element], numbers: &mut impl Numbe
         let help = "a model needs an element `face` or `tristrips` with a list `vertex_indices`";
         return Err(Report::error(format!("`{}` has no faces", header.name)).help(help));
     }
+    // A second element `vertex` need not have them too.
+    if mesh.uvs.len() == mesh.vertices.len() {
+        mesh.face_uvs = mesh.faces.clone();
+    } else {
+        mesh.uvs.clear();
+    }
     Ok(without_materials(mesh))
 }
+
+/// What the texture coordinates of a vertex are called: in the format's first description, by Blender, by `MeshLab`.
+const UV_NAMES: [[&str; 2]; 3] = [["s", "t"], ["u", "v"], ["texture_u", "texture_v"]];
 
 /// Where a strip starts anew.
 const RESTART: u32 = u32::MAX;
@@ -351,6 +370,38 @@ mod tests {
     }
 
     #[test]
+    fn texture_coordinates_by_any_of_their_names() {
+        let plain = parse_ply("m.ply", TEXT.as_bytes()).unwrap();
+        assert!(plain.uvs.is_empty() && plain.face_uvs.is_empty(), "the list `uv` of the face is another thing");
+        for [u, v] in UV_NAMES {
+            // z first, so that the last two numbers of a vertex are its texture coordinates.
+            let text = TEXT
+                .replace(
+                    "property uchar red\nproperty float z",
+                    &format!("property float z\nproperty float {v}\nproperty float {u}"),
+                )
+                .replace(" 255 0\n", " 0 .25 1e9\n");
+            let mesh = parse_ply("m.ply", text.as_bytes()).unwrap();
+            assert_eq!((&mesh.vertices, &mesh.faces), (&plain.vertices, &plain.faces));
+            assert_eq!((&mesh.uvs[..], &mesh.face_uvs), (&[[1e9, 0.25]; 4][..], &mesh.faces), "{u} {v}");
+            let half = text.replace(&format!("float {u}\n"), "float other\n");
+            assert!(parse_ply("m.ply", half.as_bytes()).unwrap().face_uvs.is_empty());
+        }
+    }
+
+    #[test]
+    fn texture_coordinates_that_are_none_are_refused() {
+        let head = TEXT.split_at(TEXT.find("element face").unwrap()).0.replace("vertex 4", "vertex 1");
+        let head = head
+            .replace("ascii", "binary_little_endian")
+            .replace("uchar red\nproperty float z", "float s\nproperty float t\nproperty float z");
+        let bytes =
+            [head.as_bytes(), b"end_header\n", &[0.0, 0.0, f32::NAN, 0.0, 0.0].map(f32::to_le_bytes).concat()].concat();
+        let report = parse_ply("m.ply", &bytes).unwrap_err();
+        assert!(report.message.contains("texture coordinates are not finite: NaN 0"), "{report}");
+    }
+
+    #[test]
     fn strips_turn_every_other_triangle_and_start_anew() {
         assert_eq!(strip_triangles(&[0, 1, 2, 3, 4]).collect::<Vec<_>>(), [[0, 1, 2], [2, 1, 3], [2, 3, 4]]);
         let restarted = [0, 1, 2, 3, RESTART, 4, 5, 6, 6, 7, 8];
@@ -407,6 +458,7 @@ mod tests {
                 }
                 if let Ok(mesh) = parse_ply("m.ply", &bytes) {
                     prop_assert!(mesh.faces.iter().flatten().all(|&v| (v as usize) < mesh.vertices.len()));
+                    prop_assert!(mesh.face_uvs.iter().flatten().all(|&v| (v as usize) < mesh.uvs.len()));
                 }
             }
         }

@@ -13,11 +13,16 @@ impl Default for Polygons {
 }
 
 impl Polygons {
-    /// The triangles of a polygon of at least three corners, which are numbers of vertices: a fan for triangles and convex
-    /// polygons, ears for others (Meisters 1975). Every corner is a corner of a triangle, also one on a straight edge:
-    /// the polygon behind that edge may have a corner there too.
+    /// The triangles of a polygon of at least three corners, which are numbers of vertices.
     pub fn triangles(&mut self, corners: &[u32], vertices: &[Vec3]) -> Vec<[u32; 3]> {
-        let fan = || (1..corners.len() - 1).map(|i| [corners[0], corners[i], corners[i + 1]]).collect();
+        self.places(corners, vertices).into_iter().map(|t| t.map(|i| corners[i as usize])).collect()
+    }
+
+    /// The same triangles by the places of their corners in the polygon, where corners have more to them than a vertex: a fan
+    /// for triangles and convex polygons, ears for others (Meisters 1975). Every corner is a corner of a triangle, also
+    /// one on a straight edge: the polygon behind that edge may have a corner there too.
+    pub fn places(&mut self, corners: &[u32], vertices: &[Vec3]) -> Vec<[u32; 3]> {
+        let fan = || (1..corners.len() as u32 - 1).map(|i| [0, i, i + 1]).collect();
         if corners.len() == 3 {
             return fan();
         }
@@ -47,7 +52,7 @@ impl Polygons {
         };
         let mut triangles = ears.chunks_exact(3).map(same_sense).collect();
         put_back(&mut triangles, corners.len() as u32);
-        triangles.into_iter().map(|t| t.map(|i| corners[i as usize])).collect()
+        triangles
     }
 }
 

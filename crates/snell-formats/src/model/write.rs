@@ -1,9 +1,9 @@
 //! Writing a mesh as OBJ.
 
-use snell::geometry::TriangleMesh;
+use snell::geometry::{NO_UVS, TriangleMesh};
 use std::io::{Result, Write};
 
-/// Writes a mesh as OBJ, with the names of its material libraries. Every number is written with as many digits as bring back the same `f64`.
+/// Writes a mesh as OBJ, with its texture coordinates and the names of its material libraries. Every number is written with as many digits as bring back the same `f64`.
 ///
 /// # Errors
 /// When the writer fails.
@@ -13,6 +13,9 @@ pub fn write_obj(mesh: &TriangleMesh, libraries: &[String], out: &mut (impl Writ
     }
     for v in &mesh.vertices {
         writeln!(out, "v {} {} {}", v.x, v.y, v.z)?;
+    }
+    for [u, v] in &mesh.uvs {
+        writeln!(out, "vt {u} {v}")?;
     }
     let mut slot = None;
     for (number, face) in mesh.faces.iter().enumerate() {
@@ -24,7 +27,13 @@ pub fn write_obj(mesh: &TriangleMesh, libraries: &[String], out: &mut (impl Writ
         }
         slot = own;
         let [a, b, c] = face.map(|v| u64::from(v) + 1);
-        writeln!(out, "f {a} {b} {c}")?;
+        match mesh.face_uvs.get(number).filter(|uvs| **uvs != NO_UVS) {
+            Some(uvs) => {
+                let [u, v, w] = uvs.map(|uv| u64::from(uv) + 1);
+                writeln!(out, "f {a}/{u} {b}/{v} {c}/{w}")?;
+            }
+            None => writeln!(out, "f {a} {b} {c}")?,
+        }
     }
     Ok(())
 }
@@ -37,7 +46,7 @@ mod tests {
 
     #[test]
     fn what_is_written_is_read_back() {
-        let text = "mtllib m.mtl\nv 0.1 -0 1e-300\nv 1e300 0.3333333333333333 2\nv 0 1 0\nf 1 2 3\nusemtl a b\nf 3 2 1\nusemtl c\nf 2 1 3\n";
+        let text = "mtllib m.mtl\nv 0.1 -0 1e-300\nv 1e300 0.3333333333333333 2\nv 0 1 0\nvt 0.1 -3\nvt 1e-9 0\nf 1/1 2/2 3/1\nusemtl a b\nf 3 2 1\nusemtl c\nf 2 1 3\n";
         let model = parse_obj(&Source::new("a.obj", text)).unwrap();
         let mut bytes = Vec::new();
         write_obj(&model.mesh, &model.libraries, &mut bytes).unwrap();

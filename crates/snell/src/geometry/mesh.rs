@@ -14,7 +14,15 @@ pub struct TriangleMesh {
     pub face_slots: Vec<u32>,
     /// Names of the materials that the file's faces ask for.
     pub slots: Vec<String>,
+    /// Texture coordinates `(u, v)`, `v` up; a picture covers 0 to 1. Finite; they have no order or number in common with
+    /// the vertices, as a seam gives one vertex several.
+    pub uvs: Vec<[f64; 2]>,
+    /// For each face the numbers of its corners' texture coordinates, or [`NO_UVS`]; empty: no face has any.
+    pub face_uvs: Vec<[u32; 3]>,
 }
+
+/// Of a face without texture coordinates.
+pub const NO_UVS: [u32; 3] = [u32::MAX; 3];
 
 /// A vertex that more faces share is not smoothed: the cost grows with the square of this number.
 pub const MAX_SMOOTHED_VALENCE: usize = 512;
@@ -25,7 +33,21 @@ impl TriangleMesh {
         self.faces[face].map(|v| self.vertices[v as usize])
     }
 
-    /// The same mesh under a map.
+    /// The texture coordinates of a face's corners, if it has any.
+    pub fn corner_uvs(&self, face: usize) -> Option<[[f64; 2]; 3]> {
+        let numbers = *self.face_uvs.get(face)?;
+        (numbers != NO_UVS).then(|| numbers.map(|number| self.uvs[number as usize]))
+    }
+
+    /// Turns a face so that it looks the other way.
+    pub(crate) fn turn(&mut self, face: usize) {
+        self.faces[face].swap(1, 2);
+        if let Some(uvs) = self.face_uvs.get_mut(face) {
+            uvs.swap(1, 2);
+        }
+    }
+
+    /// The same mesh under a map; its texture sticks to it.
     #[must_use]
     pub fn transformed(&self, map: &Affine) -> Self {
         Self { vertices: self.vertices.iter().map(|&v| map.apply(v)).collect(), ..self.clone() }

@@ -11,7 +11,7 @@ pub mod triangle;
 pub mod vec3;
 
 pub use bounds::Bounds;
-pub use mesh::TriangleMesh;
+pub use mesh::{NO_UVS, TriangleMesh};
 pub use sphere::Sphere;
 pub use transform::Affine;
 pub use vec3::Vec3;

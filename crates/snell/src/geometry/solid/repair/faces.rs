@@ -44,7 +44,7 @@ pub(super) fn remove_copies(mesh: &mut TriangleMesh) -> usize {
 pub(super) fn agree(mesh: &mut TriangleMesh) -> usize {
     let turned = Outline::of(mesh).turned;
     for &face in &turned {
-        mesh.faces[face as usize].swap(1, 2);
+        mesh.turn(face as usize);
     }
     turned.len()
 }

@@ -7,7 +7,7 @@
 
 use super::super::topology::Topology;
 use super::super::{Outline, Report};
-use crate::geometry::{TriangleMesh, Vec3};
+use crate::geometry::{NO_UVS, TriangleMesh, Vec3};
 use std::collections::{HashMap, HashSet};
 
 /// Filling a loop of n edges takes n³/6 steps. When so many are spent, the remaining holes stay.
@@ -69,6 +69,10 @@ pub(super) fn fill(mesh: &mut TriangleMesh, largest: usize) -> (usize, usize) {
             mesh.faces.extend(&patch.faces);
             if let Some(&slot) = mesh.face_slots.get(patch.slot as usize) {
                 mesh.face_slots.extend(patch.faces.iter().map(|_| slot));
+            }
+            if !mesh.face_uvs.is_empty() {
+                // Nobody painted what was not there.
+                mesh.face_uvs.resize(mesh.faces.len(), NO_UVS);
             }
         }
     }

@@ -6,7 +6,7 @@
 
 use super::super::exact::{broadside, scaled};
 use super::super::topology::{Kind, Topology, Use};
-use crate::geometry::{TriangleMesh, Vec3};
+use crate::geometry::{NO_UVS, TriangleMesh, Vec3};
 use std::collections::HashSet;
 
 /// Rounds of flips. Each can free others; a line of faces without end is left as it is.
@@ -61,6 +61,10 @@ fn round(mesh: &mut TriangleMesh, points: &[Vec3]) -> usize {
         for corner in [[a, c], [a, b], [b, c], [a, d], [c, d]] {
             topology.edge(corner).iter().for_each(|u: &Use| touched[u.face as usize] = true);
         }
+        // On a line the longest components are in the ratio of the lengths.
+        let (from_a, whole) = (apart((long + 1) % 3), apart(long));
+        let way = if whole > 0.0 { from_a / whole } else { 0.0 };
+        divide_uvs(mesh, line as usize, behind as usize, at, way);
         mesh.faces[line as usize] = [a, b, d];
         mesh.faces[behind as usize] = [b, c, d];
         if let [Some(&slot), Some(own)] = [mesh.face_slots.get(behind as usize), mesh.face_slots.get(line as usize)]
@@ -71,4 +75,20 @@ fn round(mesh: &mut TriangleMesh, points: &[Vec3]) -> usize {
         count += 1;
     }
     count
+}
+
+/// The texture of the face behind goes on over both halves of it: between its corners `at` and the next, the new one lies
+/// at this part of the way.
+fn divide_uvs(mesh: &mut TriangleMesh, line: usize, behind: usize, at: usize, way: f64) {
+    let Some(&numbers) = mesh.face_uvs.get(behind) else { return };
+    if numbers == NO_UVS {
+        mesh.face_uvs[line] = NO_UVS;
+        return;
+    }
+    let [a, c, d] = [0, 1, 2].map(|i| numbers[(at + i) % 3]);
+    let ([au, av], [cu, cv]) = (mesh.uvs[a as usize], mesh.uvs[c as usize]);
+    let b = mesh.uvs.len() as u32;
+    mesh.uvs.push([au * (1.0 - way) + cu * way, av * (1.0 - way) + cv * way]);
+    mesh.face_uvs[line] = [a, b, d];
+    mesh.face_uvs[behind] = [b, c, d];
 }

@@ -3,7 +3,7 @@
 //! In this order: broken faces go; vertices in one place become one; faces with two corners in one place and copies of faces
 //! go; faces are turned so that neighbours agree; small holes are filled; faces that are a line are mended; solids are
 //! turned outward; vertices that no face uses go. What is already right is left as it is, so that repairing twice is
-//! repairing once.
+//! repairing once. Faces keep their materials and texture coordinates; those that fill holes have no texture coordinates.
 
 mod faces;
 mod holes;
@@ -127,6 +127,8 @@ fn keep(mesh: &mut TriangleMesh, wanted: impl Fn(usize) -> bool) -> usize {
     mesh.faces.retain(|_| number.next().is_none_or(&wanted));
     let mut number = 0..;
     mesh.face_slots.retain(|_| number.next().is_none_or(&wanted));
+    let mut number = 0..;
+    mesh.face_uvs.retain(|_| number.next().is_none_or(&wanted));
     before - mesh.faces.len()
 }
 
@@ -140,9 +142,9 @@ fn turn_outward(mesh: &mut TriangleMesh) -> usize {
         return 0;
     }
     let mut turned = mesh.clone();
-    for (face, &component) in turned.faces.iter_mut().zip(&report.component_of) {
+    for (face, &component) in report.component_of.iter().enumerate() {
         if component != NO_COMPONENT && report.components[component as usize].inside_out {
-            face.swap(1, 2);
+            turned.turn(face);
         }
     }
     if inside_out(&structure(&turned)) >= before {

@@ -11,6 +11,14 @@ fn once_and_for_all(mesh: &TriangleMesh) -> Result<TriangleMesh, TestCaseError> 
     prop_assert!(!before.is_solid() || after.is_solid(), "{before:?} {log:?} {after:?}");
     prop_assert!(after.broken.is_empty() && before.component_of.len() == mesh.faces.len());
     prop_assert!(mended.face_slots.len() == mended.faces.len());
+    prop_assert!(mended.face_uvs.len() == mended.faces.len());
+    let painted = (0..mended.faces.len()).filter_map(|f| Some((mended.corners(f), mended.corner_uvs(f)?)));
+    for (corners, uvs) in painted.clone() {
+        // Numbers up to 17, halved again and again: a few roundings.
+        let off = |i: usize| [0, 1].map(|k| (uvs[i][k] - paint(corners[i])[k]).abs());
+        prop_assert!((0..3).all(|i| off(i).iter().all(|&off| off < 1e-12)), "{corners:?} {uvs:?}");
+    }
+    prop_assert!(log.new_faces > 0 || painted.count() == mended.faces.len(), "only what fills holes is bare");
     let (again, nothing) = repair(&mended, &Options::default());
     prop_assert!(nothing.is_empty() && again == mended, "{log:?} {nothing:?}");
     Ok(mended)
@@ -19,7 +27,23 @@ fn once_and_for_all(mesh: &TriangleMesh) -> Result<TriangleMesh, TestCaseError> 
 /// Faces between the points of a small grid, where much lies on lines, in planes and in one place.
 fn on_a_grid(faces: Vec<[u32; 3]>, places: Vec<[i8; 3]>) -> TriangleMesh {
     let vertices = places.into_iter().map(|p| Vec3::from(p.map(f64::from))).collect();
-    TriangleMesh { vertices, face_slots: vec![0; faces.len()], faces, slots: vec![String::new()] }
+    let mut mesh = TriangleMesh {
+        vertices,
+        face_slots: vec![0; faces.len()],
+        faces,
+        slots: vec![String::new()],
+        ..TriangleMesh::default()
+    };
+    for (i, face) in mesh.faces.iter().enumerate() {
+        mesh.uvs.extend(face.map(|v| mesh.vertices.get(v as usize).map_or([0.5; 2], |&at| paint(at))));
+        mesh.face_uvs.push([0, 1, 2].map(|k| 3 * i as u32 + k));
+    }
+    mesh
+}
+
+/// Texture coordinates that tell the position, and are linear in it.
+fn paint(at: Vec3) -> [f64; 2] {
+    [at.x + 16.0 * at.y, 16.0 * at.z - at.x]
 }
 
 proptest! {
@@ -60,10 +84,12 @@ proptest! {
         let count = damaged.faces.len();
         for t in turned {
             damaged.faces[t % count].swap(0, 1);
+            damaged.face_uvs[t % count].swap(0, 1);
         }
         for g in gone {
             damaged.faces.remove(g % damaged.faces.len());
             damaged.face_slots.pop();
+            damaged.face_uvs.remove(g % damaged.face_uvs.len());
         }
         let mended = once_and_for_all(&damaged)?;
         if cubes.len() == 1 {
