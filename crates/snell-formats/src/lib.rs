@@ -3,7 +3,7 @@
 //! | in | out |
 //! | --- | --- |
 //! | [`load`](mod@load): scene files (TOML, JSON), the course's driver files, NFF, their models (OBJ, PLY, STL) | [`scene_file`]: TOML, JSON, the JSON Schema; [`model`]: OBJ |
-//! | [`picture`]: PNG, PPM, EXR, NPY, to compare or to read the recipe | [`picture`]: the same |
+//! | [`picture`]: PNG, PPM, EXR, NPY, to compare or to read the recipe; as [`texture`]s | [`picture`]: the same |
 //!
 //! Whatever is wrong with a file becomes a [`Report`] with the place, what was read, what was expected and what to do.
 
@@ -16,7 +16,9 @@ pub mod nff;
 pub mod picture;
 pub mod report;
 pub mod scene_file;
+pub mod texture;
 mod words;
 
 pub use load::{LoadOptions, Loaded, load};
 pub use report::{Report, Source};
+pub use texture::read_image;

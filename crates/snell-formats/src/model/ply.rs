@@ -302,7 +302,7 @@ fn read_elements(header: &Source, elements: &[Element], numbers: &mut impl Numbe
     }
     // A second element `vertex` need not have them too.
     if mesh.uvs.len() == mesh.vertices.len() {
-        mesh.face_uvs = mesh.faces.clone();
+        mesh.face_uvs.clone_from(&mesh.faces);
     } else {
         mesh.uvs.clear();
     }

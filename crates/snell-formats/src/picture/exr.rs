@@ -43,15 +43,20 @@ fn image<C>(display: IntegerBounds, layer: Layer<C>) -> Image<Layer<C>> {
     Image { attributes: ImageAttributes::new(display), layer_data: layer }
 }
 
-pub(super) fn read(bytes: &[u8]) -> std::result::Result<Picture, String> {
+pub(super) fn read<P: Clone + 'static, F: Fn(Rgb) -> P + 'static>(
+    bytes: &[u8],
+    convert: impl FnOnce(Option<u32>) -> F,
+) -> std::result::Result<Picture<P>, String> {
+    let convert = convert(None);
+    let black = convert(Rgb::gray(0.0));
     let image = exr::prelude::read()
         .no_deep_data()
         .largest_resolution_level()
         .rgba_channels(
-            |size, _| (size, vec![Rgb::gray(0.0); checked_pixels(size.0 as u64, size.1 as u64).unwrap_or(0)]),
-            |(size, pixels), at, (r, g, b, _): (f32, f32, f32, f32)| {
+            move |size, _| (size, vec![black.clone(); checked_pixels(size.0 as u64, size.1 as u64).unwrap_or(0)]),
+            move |(size, pixels), at, (r, g, b, _): (f32, f32, f32, f32)| {
                 if let Some(pixel) = pixels.get_mut(at.y() * size.0 + at.x()) {
-                    *pixel = Rgb::new(f64::from(r), f64::from(g), f64::from(b));
+                    *pixel = convert(Rgb::new(f64::from(r), f64::from(g), f64::from(b)));
                 }
             },
         )

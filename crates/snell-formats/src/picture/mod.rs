@@ -69,15 +69,15 @@ pub fn write(path: &Path, format: Format, film: &Film, encoding: Encoding, recip
     })
 }
 
-/// A picture that was read.
+/// A picture that was read, with pixels of some kind.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Picture {
+pub struct Picture<P = Rgb> {
     /// Columns.
     pub width: usize,
     /// Rows.
     pub height: usize,
     /// Pixels, row by row, row 0 on top. Integers as they stand in the file.
-    pub pixels: Vec<Rgb>,
+    pub pixels: Vec<P>,
     /// The largest integer (255, 65535), or `None` for floating point.
     pub max: Option<u32>,
     /// What is needed to render it again, if the file says so.
@@ -100,13 +100,25 @@ fn fallible<T>(count: usize) -> Result<Vec<T>, String> {
 /// # Errors
 /// When the file is not such a picture, is cut off, or is too large.
 pub fn read(path: &Path) -> Result<Picture, Report> {
+    read_as(path, |_| |color| color)
+}
+
+/// The same with pixels that become something smaller as they are read, so that a large picture is in memory once. Told the
+/// largest integer ([`Picture::max`]), `convert` says how.
+///
+/// # Errors
+/// As [`read`].
+pub(crate) fn read_as<P: Clone + 'static, F: Fn(Rgb) -> P + 'static>(
+    path: &Path,
+    convert: impl FnOnce(Option<u32>) -> F,
+) -> Result<Picture<P>, Report> {
     let format = Format::of(path)?;
     let bytes = disk::read(path, disk::MAX_MODEL_BYTES)?;
     let picture = match format {
-        Format::Png { .. } => png::read(&bytes),
-        Format::Ppm { .. } => ppm::read(&bytes),
-        Format::Exr => exr::read(&bytes),
-        Format::Npy => npy::read(&bytes),
+        Format::Png { .. } => png::read(&bytes, convert),
+        Format::Ppm { .. } => ppm::read(&bytes, convert),
+        Format::Exr => exr::read(&bytes, convert),
+        Format::Npy => npy::read(&bytes, convert),
     };
     picture.map_err(|why| Report::error(format!("`{}` cannot be read: {why}", path.display())))
 }

@@ -26,7 +26,10 @@ pub(super) fn write(out: &mut dyn Write, film: &Film) -> std::io::Result<()> {
     Ok(())
 }
 
-pub(super) fn read(bytes: &[u8]) -> Result<Picture, String> {
+pub(super) fn read<P, F: Fn(Rgb) -> P>(
+    bytes: &[u8],
+    convert: impl FnOnce(Option<u32>) -> F,
+) -> Result<Picture<P>, String> {
     if !bytes.starts_with(MAGIC) {
         return Err("it is no NPY file".to_owned());
     }
@@ -52,6 +55,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Picture, String> {
     }
     let value = |bytes: &[u8]| bytes.as_chunks::<8>().0.first().map_or(0.0, |&b| f64::from_le_bytes(b));
     let color = |p: &[u8; 24]| Rgb::new(value(&p[..8]), value(&p[8..16]), value(&p[16..]));
-    let pixels = data[..count].as_chunks::<24>().0.iter().map(color).collect();
+    let pixel = convert(None);
+    let pixels = data[..count].as_chunks::<24>().0.iter().map(|p| pixel(color(p))).collect();
     Ok(Picture { width: width as usize, height: height as usize, pixels, max: None, recipe: None })
 }

@@ -46,7 +46,10 @@ pub(super) fn write(
     Ok(writer.finish()?)
 }
 
-pub(super) fn read(bytes: &[u8]) -> Result<Picture, String> {
+pub(super) fn read<P, F: Fn(Rgb) -> P>(
+    bytes: &[u8],
+    convert: impl FnOnce(Option<u32>) -> F,
+) -> Result<Picture<P>, String> {
     let limits = png::Limits { bytes: MAX_PIXELS as usize * 8 };
     let mut decoder = png::Decoder::new_with_limits(Cursor::new(bytes), limits);
     decoder.set_transformations(Transformations::EXPAND);
@@ -70,12 +73,13 @@ pub(super) fn read(bytes: &[u8]) -> Result<Picture, String> {
         let bytes = &pixel[channel * bytes_each..(channel + 1) * bytes_each];
         bytes.iter().fold(0.0, |value, &byte| value * 256.0 + f64::from(byte))
     };
-    // Gray, gray and alpha, colour, colour and alpha. Alpha is not compared.
+    // Gray, gray and alpha, colour, colour and alpha. Alpha is left out.
     let color = |p: &[u8]| {
         if channels < 3 { Rgb::gray(sample(p, 0)) } else { Rgb::new(sample(p, 0), sample(p, 1), sample(p, 2)) }
     };
-    let mut pixels = fallible(count)?;
-    pixels.extend(data.chunks_exact(channels * bytes_each).map(color));
     let max = Some(if sixteen_bit { 65535 } else { 255 });
+    let pixel = convert(max);
+    let mut pixels = fallible(count)?;
+    pixels.extend(data.chunks_exact(channels * bytes_each).map(|p| pixel(color(p))));
     Ok(Picture { width: width as usize, height: height as usize, pixels, max, recipe })
 }

@@ -22,7 +22,10 @@ pub(super) fn write(out: &mut dyn Write, film: &Film, encoding: Encoding, binary
     Ok(())
 }
 
-pub(super) fn read(bytes: &[u8]) -> Result<Picture, String> {
+pub(super) fn read<P, F: Fn(Rgb) -> P>(
+    bytes: &[u8],
+    convert: impl FnOnce(Option<u32>) -> F,
+) -> Result<Picture<P>, String> {
     let mut header = Header { bytes, at: 2 };
     let binary = match bytes.get(..2) {
         Some(b"P3") => false,
@@ -34,31 +37,30 @@ pub(super) fn read(bytes: &[u8]) -> Result<Picture, String> {
     if !(1..=65535).contains(&max) {
         return Err(format!("the largest value {max} is not between 1 and 65535"));
     }
-    let count = checked_pixels(width, height)? * 3;
+    let count = checked_pixels(width, height)?;
     // Each value takes a byte at least: a short file cannot ask for much memory.
-    if bytes.len() < count {
-        return Err(format!("it is cut off: {count} values need more than {} bytes", bytes.len()));
+    if bytes.len() < 3 * count {
+        return Err(format!("it is cut off: {} values need more than {} bytes", 3 * count, bytes.len()));
     }
-    let mut samples = fallible::<f64>(count)?;
-    if binary {
-        let size = if max > 255 { 2 } else { 1 };
-        // One white space ends the header.
-        let data = bytes.get(header.at + 1..).unwrap_or_default();
-        if data.len() < count * size {
-            return Err(format!("it is cut off: {} of {} bytes of pixels are there", data.len(), count * size));
-        }
-        let big_endian = |b: &[u8]| b.iter().fold(0, |value, &byte| value * 256 + u32::from(byte));
-        samples.extend(data[..count * size].chunks_exact(size).map(|b| f64::from(big_endian(b))));
-    } else {
-        for i in 0..count {
-            let value = header.number("a value").map_err(|e| format!("{e}, after {i} of {count} values"))?;
-            samples.push(value as f64);
-        }
+    let size = if max > 255 { 2 } else { 1 };
+    // One white space ends the header.
+    let data = bytes.get(header.at + 1..).unwrap_or_default();
+    if binary && data.len() < 3 * count * size {
+        return Err(format!("it is cut off: {} of {} bytes of pixels are there", data.len(), 3 * count * size));
     }
-    if let Some(value) = samples.iter().find(|&&v| v > max as f64) {
-        return Err(format!("a value {value} is above the largest, {max}"));
+    let mut sample = |i: usize| {
+        let value = if binary {
+            data[i * size..][..size].iter().fold(0, |value, &byte| value * 256 + u64::from(byte))
+        } else {
+            header.number("a value").map_err(|e| format!("{e}, after {i} of {} values", 3 * count))?
+        };
+        if value <= max { Ok(value as f64) } else { Err(format!("a value {value} is above the largest, {max}")) }
+    };
+    let pixel = convert(Some(max as u32));
+    let mut pixels = fallible(count)?;
+    for i in 0..count {
+        pixels.push(pixel(Rgb::new(sample(3 * i)?, sample(3 * i + 1)?, sample(3 * i + 2)?)));
     }
-    let pixels = samples.as_chunks::<3>().0.iter().map(|&p| Rgb::from(p)).collect();
     Ok(Picture { width: width as usize, height: height as usize, pixels, max: Some(max as u32), recipe: None })
 }
 

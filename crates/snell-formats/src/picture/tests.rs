@@ -110,11 +110,12 @@ proptest! {
             *b = byte;
         }
         bytes.truncate(keep);
+        let plain = |_| |color: Rgb| color;
         let _ = match format {
-            Format::Png { .. } => png::read(&bytes),
-            Format::Ppm { .. } => ppm::read(&bytes),
-            Format::Exr => exr::read(&bytes),
-            Format::Npy => npy::read(&bytes),
+            Format::Png { .. } => png::read(&bytes, plain),
+            Format::Ppm { .. } => ppm::read(&bytes, plain),
+            Format::Exr => exr::read(&bytes, plain),
+            Format::Npy => npy::read(&bytes, plain),
         };
     }
 }

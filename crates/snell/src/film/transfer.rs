@@ -1,4 +1,4 @@
-//! From linear light to the integers of a picture file.
+//! From linear light to the integers of a picture file, and back.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -56,6 +56,11 @@ pub fn srgb(linear: f64) -> f64 {
     if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * libm::pow(linear, 1.0 / 2.4) - 0.055 }
 }
 
+/// The inverse of [`srgb`]: from the encoded value to linear light, both 0 to 1.
+pub fn from_srgb(encoded: f64) -> f64 {
+    if encoded <= 0.04045 { encoded / 12.92 } else { libm::pow((encoded + 0.055) / 1.055, 2.4) }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -82,5 +87,21 @@ mod tests {
         assert!((srgb(0.214_041) - 0.5).abs() < 1e-5);
         assert!((srgb(0.003_130_8) - srgb(0.003_130_81)).abs() < 1e-6);
         assert!((srgb(1.0) - 1.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn every_code_comes_back() {
+        let encoding = Encoding { transfer: Transfer::Srgb, rounding: Rounding::Round };
+        for max in [255, 65535] {
+            for code in 0..=max {
+                let linear = from_srgb(f64::from(code) / f64::from(max));
+                assert_eq!(encoding.encode(linear, max), code);
+                // As textures keep it: the step between codes is 2⁻¹⁶ and more, a rounding 2⁻²⁵ and less.
+                assert_eq!(encoding.encode(f64::from(linear as f32), max), code);
+            }
+        }
+        assert_eq!((from_srgb(0.0), from_srgb(1.0)), (0.0, 1.0));
+        // The standard's two branches meet to the digits that it gives.
+        assert!((from_srgb(0.04045) - from_srgb(0.040_450_1)).abs() < 1e-7);
     }
 }
