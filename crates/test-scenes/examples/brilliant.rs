@@ -7,6 +7,7 @@
 use snell_formats::model::write_obj;
 use snell_test_scenes::brilliant::Cut;
 use std::error::Error;
+use std::fmt::Debug;
 use std::io::stdout;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -20,9 +21,23 @@ fn main() -> Result<(), Box<dyn Error>> {
         Some("obj") => write_obj(&mesh, &[], &mut stdout())?,
         Some("toml") => {
             let vertices: Vec<[f64; 3]> = mesh.vertices.into_iter().map(Into::into).collect();
-            println!("vertices = {vertices:?}\nfaces = {:?}", mesh.faces);
+            print_array("vertices", &vertices, 2);
+            print_array("faces", &mesh.faces, 8);
         }
         _ => return Err("obj or toml?".into()),
     }
     Ok(())
+}
+
+/// A TOML array, with so many elements in a line.
+fn print_array(name: &str, elements: &[impl Debug], in_a_line: usize) {
+    println!("{name} = [");
+    for line in elements.chunks(in_a_line) {
+        print!("   ");
+        for element in line {
+            print!(" {element:?},");
+        }
+        println!();
+    }
+    println!("]");
 }
