@@ -154,7 +154,7 @@ mod tests {
     /// Coordinates are below 1 and come from a few dozen roundings.
     const ROUNDING: f64 = 1e-14;
 
-    fn corners<'a>(stone: &'a Brilliant, kind: Facet) -> impl Iterator<Item = Vec<Vec3>> + 'a {
+    fn corners(stone: &Brilliant, kind: Facet) -> impl Iterator<Item = Vec<Vec3>> {
         let facets = stone.kinds.iter().zip(&stone.solid.facets).filter(move |(k, _)| **k == kind);
         facets.map(|(_, facet)| facet.iter().map(|&v| stone.solid.vertices[v as usize]).collect())
     }
@@ -197,7 +197,9 @@ mod tests {
             }
         }
         for corners in corners(&stone, Table) {
-            corners.iter().for_each(|&p| close(out(p), cut.table / 2.0));
+            for corner in corners {
+                close(out(corner), cut.table / 2.0);
+            }
         }
         let edge = cut.table / 2.0 * sin_cos_degrees(22.5).1;
         for corners in corners(&stone, Star) {
