@@ -4,7 +4,9 @@
 
 #![allow(clippy::unwrap_used, clippy::missing_panics_doc, reason = "a test that cannot go on fails")]
 
+pub mod brilliant;
 mod build;
+pub mod convex;
 mod crowd;
 pub mod glass;
 mod hostile;
