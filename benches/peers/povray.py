@@ -13,7 +13,7 @@ from pathlib import Path
 
 HEAD = """#version 3.7;
 global_settings {{ assumed_gamma 1.0 max_trace_level {level} ambient_light rgb {ambient} }}
-background {{ rgb 0 }}
+background {{ rgb {background} }}
 """
 
 Vector = tuple[float, float, float]
@@ -21,7 +21,7 @@ Vector = tuple[float, float, float]
 
 def default_scene() -> str:
     """The lecture's default scene, `ko` read as opacity: POV-Ray's own optics, so not the same picture."""
-    text = HEAD.format(level=7, ambient=0.2)
+    text = HEAD.format(level=7, ambient=0.2, background=0)
     # Half the picture is 2 wide at a distance of 5.
     angle = math.degrees(2 * math.atan(2 / 5))
     text += f"""camera {{ perspective location <50,50,100> right -x up y angle {angle:.12f} sky y look_at <50,50,10> }}
@@ -72,7 +72,7 @@ def flake(levels: int) -> list[tuple[Vector, float]]:
 
 
 def sphereflake(levels: int) -> str:
-    text = HEAD.format(level=5, ambient=0)
+    text = HEAD.format(level=5, ambient=0, background=0)
     text += "camera { perspective location <2.1,1.3,1.7> right -x up y angle 45 sky z look_at <0,0,0> }\n"
     for light in ("<4,3,2>", "<1,-4,4>", "<-3,1,5>"):
         text += f"light_source {{ {light} rgb {1 / math.sqrt(3):.9f} }}\n"
@@ -85,7 +85,60 @@ def sphereflake(levels: int) -> str:
     return text + "".join(lines)
 
 
-SCENES = {"default": default_scene, "flake:5": lambda: sphereflake(5)}
+def knot(nu: int, nv: int, r: float) -> tuple[list[Vector], list[Vector], list[tuple[int, int, int]]]:
+    """Positions, normals and faces as in `src/knot.rs`."""
+
+    def cross(a: Vector, b: Vector) -> Vector:
+        return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+    def unit(v: Vector) -> Vector:
+        return tuple(c / math.hypot(*v) for c in v)
+
+    positions, normals, faces = [], [], []
+    for i in range(nu):
+        u = 2 * math.pi * i / nu
+        sin, cos = math.sin(2 * u), math.cos(2 * u)
+        a, da = 2 + math.cos(3 * u), -3 * math.sin(3 * u)
+        center = (a * cos, a * sin, math.sin(3 * u))
+        tangent = (da * cos - 2 * a * sin, da * sin + 2 * a * cos, 3 * math.cos(3 * u))
+        b = unit(cross(tangent, center))
+        n = unit(cross(b, tangent))
+        for j in range(nv):
+            v = 2 * math.pi * j / nv
+            normals.append(tuple(nk * math.cos(v) + bk * math.sin(v) for nk, bk in zip(n, b)))
+            positions.append(tuple(c + r * k for c, k in zip(center, normals[-1])))
+            p, q, s, t = ((i + k) % nu * nv + (j + m) % nv for k, m in ((0, 0), (1, 0), (1, 1), (0, 1)))
+            faces += [(p, q, s), (p, s, t)]
+    return positions, normals, faces
+
+
+def glass_knot(shadows: str) -> str:
+    """Glass without highlights, as Snell's is. It takes nothing from light that falls through it, so that `no_shadow` leaves
+    the picture as it is, and only spares the work."""
+    text = HEAD.format(level=8, ambient=0, background="<.4,.55,.8>")
+    text += "camera { perspective location <6,-5,4.5> right -x up y angle 50 sky z look_at <0,0,0> }\n"
+    text += "light_source { <8,-2,9> rgb .8 }\nlight_source { <-4,-8,7> rgb .5 }\n"
+    text += """polygon { 5, <32,32,-1.6>, <-32,32,-1.6>, <-32,-32,-1.6>, <32,-32,-1.6>, <32,32,-1.6>
+  pigment { checker rgb <.9,.9,.9> rgb <.15,.15,.2> } finish { ambient 0 diffuse .8 } }
+"""
+    parts = zip(("vertex_vectors", "normal_vectors", "face_indices"), knot(500, 100, 0.45))
+    rows = "\n".join(f"{name} {{ {len(rows)}, {','.join(map(vector, rows))} }}" for name, rows in parts)
+    return text + f"""mesh2 {{ {rows} inside_vector z {shadows}
+  texture {{ pigment {{ rgbt 1 }} finish {{ ambient 0 diffuse 0 reflection {{ 0, 1 fresnel on }} conserve_energy }} }}
+  interior {{ ior 1.5 }} }}
+"""
+
+
+def vector(v: Vector) -> str:
+    return "<" + ",".join(f"{c:.9g}" for c in v) + ">"
+
+
+SCENES = {
+    "default": default_scene,
+    "flake:5": lambda: sphereflake(5),
+    "glass:off": lambda: glass_knot("no_shadow"),
+    "glass:tinted": lambda: glass_knot(""),
+}
 
 
 class PovRay:

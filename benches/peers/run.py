@@ -26,6 +26,8 @@ EMBREE = {
 }
 # What is asked of Snell on one and on two threads.
 FRAMES = {"default": "frame default 2048 6", "sphereflake": "frame flake:5 512 4"}
+# What is asked of Snell on one thread.
+GLASS = {"glass": "frame glass:off 512 7", "light through glass": "frame glass:tinted 512 7"}
 RAYS = {kind: f"rays {kind}" for kind in KINDS}
 
 
@@ -95,24 +97,25 @@ def agreement(kind: str, snell: Timing, embree: Timing) -> dict:
     return {"kind": kind, "snell": ours, "embree": theirs, "agree": agree}
 
 
-def compare_flakes(pov: PovRay, snell: Worker) -> str:
-    """What `snell diff` says of the two pictures of the sphereflake."""
-    scene, picture = SCRATCH / "flake.json", SCRATCH / "flake.png"
-    snell.ask(f"scene flake:5 512 {scene}")
+def compare(name: str, pov: PovRay, snell: Worker) -> str:
+    """What `snell diff` says of the two pictures of a scene."""
+    theirs = pov.file(name).with_suffix(".png")
+    scene, picture = (SCRATCH / theirs.name).with_suffix(".json"), SCRATCH / theirs.name
+    snell.ask(f"scene {name} 512 {scene}")
     command = ROOT / "target" / "ci" / "snell"
     subprocess.run([command, "render", "--quiet", scene, "-o", picture], check=True)
-    return output_of(str(command), "diff", str(picture), str(pov.file("flake:5").with_suffix(".png")))
+    return output_of(str(command), "diff", str(picture), str(theirs))
 
 
 def measure(rounds: int, programs: dict) -> dict:
     run = Run(programs)
     pairs, widths, two = {}, {}, {}
     both = (os.cpu_count() or 1) > 1
-    for name, question in FRAMES.items():
+    for name, question in (FRAMES | GLASS).items():
         size = question.split()[2]
         pov = run.add("POV-Ray", f"frame {question.split()[1]} {size} 1")
         pairs[name] = (run.add("Snell", f"{question} 1"), pov)
-        two[name] = run.add("Snell", f"{question} 2") if both else None
+        two[name] = run.add("Snell", f"{question} 2") if both and name in FRAMES else None
     for kind, question in RAYS.items():
         widths[kind] = [run.add("Embree", f"{question} {width} 1") for width in EMBREE[kind]]
         pairs[kind] = (run.add("Snell", f"{question} 1"), None)
@@ -141,11 +144,14 @@ def measure(rounds: int, programs: dict) -> dict:
         faster("5", "cosine bounce rays, the same", "bounce", "Embree, best width", 1),
         Row("6", "building the tree, the same mesh", "Embree, medium", "at most", 1.5).filled(*builds),
     ]
-    for name, (single, _) in pairs.items():
+    for name in (*FRAMES, *KINDS):
         line = Row("7", f"two threads against one: {name}", "Snell", "at least", 1.85)
-        rows.append(line.filled(single, two[name], missing="" if both else "one core only"))
+        rows.append(line.filled(pairs[name][0], two[name], missing="" if both else "one core only"))
     memory = Row("8", "memory of the built knot, mesh included", "Embree, medium", "at most", 1.5)
     rows.append(memory.filled(*builds, value="bytes"))
+    knot = "glass knot, 100 000 triangles, 512 x 512, depth 7"
+    rows.append(faster("9", f"{knot}, without shadows", "glass", "POV-Ray", 25))
+    rows.append(faster("9", "the same, light falls through the glass", "light through glass", "POV-Ray", 25))
 
     result = {
         "rows": rows,
@@ -153,7 +159,8 @@ def measure(rounds: int, programs: dict) -> dict:
         "agreement": agreed,
     }
     if "POV-Ray" in programs:
-        result["flakes"] = compare_flakes(programs["POV-Ray"], programs["Snell"])
+        pictures = {"flakes": "flake:5", "glass": "glass:off"}
+        result |= {key: compare(name, programs["POV-Ray"], programs["Snell"]) for key, name in pictures.items()}
     return result
 
 

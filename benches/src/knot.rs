@@ -53,6 +53,20 @@ pub fn square(half: f64, z: f64) -> TriangleMesh {
     }
 }
 
+/// The white and the black squares of a chessboard in the plane of this height, from `−half` to `half`. Squares have edges
+/// of 1, and the one from the origin to (1, 1) is white.
+pub fn chessboard(half: i32, z: f64) -> [TriangleMesh; 2] {
+    let mut colors = [TriangleMesh::default(), TriangleMesh::default()];
+    for (i, j) in (-half..half).flat_map(|i| (-half..half).map(move |j| (i, j))) {
+        let mesh = &mut colors[((i + j) & 1) as usize];
+        let first = mesh.vertices.len() as u32;
+        let corners = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)];
+        mesh.vertices.extend(corners.map(|(x, y)| rounded(Vec3::new(f64::from(x), f64::from(y), z))));
+        mesh.faces.extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
+    }
+    colors
+}
+
 fn rounded(v: Vec3) -> Vec3 {
     Vec3::new(to_f32(v.x), to_f32(v.y), to_f32(v.z))
 }
