@@ -9,9 +9,9 @@ export default defineConfig({
       fileName: (format) => (format === 'iife' ? 'snell-viewer.js' : 'snell-viewer.mjs'),
     },
     target: 'es2022',
-    // The licence of three.js asks that its notice stays in every copy.
-    rollupOptions: { output: { banner: '/* Contains three.js, Copyright 2010-2026 three.js authors, MIT licence. */' } },
   },
+  // The licence of three.js asks that its notice stays in every copy.
+  esbuild: { legalComments: 'inline' },
   test: {
     include: ['test/**/*.test.ts'],
     testTimeout: 120_000,

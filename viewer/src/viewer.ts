@@ -17,6 +17,9 @@ export interface ViewerOptions {
   scheme?: 'auto' | 'light' | 'dark';
 }
 
+/** Names in the text alternative: nobody listens to a hundred. */
+const MAX_SPOKEN = 12;
+
 export type SelectListener = (id: number | null) => void;
 
 /** Shows the data in `parent`. Throws a `ViewerDataError` if it cannot be shown. */
@@ -61,8 +64,6 @@ export class Viewer {
       this.drawing?.setTheme(theme);
       this.update();
     });
-    // The size of the canvas is known after the first layout.
-    requestAnimationFrame(() => this.drawing?.reset(false));
   }
 
   /** The selected ray of the sample that is shown. */
@@ -157,7 +158,7 @@ export class Viewer {
           this.update();
         }),
       );
-      view.append(canvas, drawing.names.root, toolbar, element('p', { id: 'alternative', class: 'hidden-text' }, this.alternative()));
+      view.append(drawing.root, toolbar, element('p', { id: 'alternative', class: 'hidden-text' }, this.alternative()));
     }
     view.append(element('div', { class: 'footer' }, this.note, ...(drawing === null ? [] : [legend()])));
     return view;
@@ -181,7 +182,6 @@ export class Viewer {
   /** What the drawing shows, for those who do not see it. */
   private alternative(): string {
     const { spheres, meshes, lights } = this.data.scene;
-    const names = (things: { name: string }[]) => things.map(({ name }) => name).join(', ') || 'none';
     return (
       `Spheres: ${names(spheres)}. Meshes: ${names(meshes)}. Lights: ${names(lights)}. ` +
       'The tree of rays beside the drawing says where each ray goes and what it adds. ' +
@@ -190,7 +190,13 @@ export class Viewer {
   }
 }
 
+function names(things: { name: string }[]): string {
+  if (things.length === 0) return 'none';
+  const first = things.slice(0, MAX_SPOKEN).map(({ name }) => name).join(', ');
+  return things.length > MAX_SPOKEN ? `${first} and ${things.length - MAX_SPOKEN} more` : first;
+}
+
 function legend(): HTMLElement {
-  const items = Object.entries(KIND_NAMES).map(([kind, name]) => element('li', {}, stroke(kind), name.replace(/ ray$/, '')));
+  const items = Object.entries(KIND_NAMES).map(([kind, name]) => element('li', {}, stroke(kind), name));
   return element('ul', { class: 'legend', 'aria-label': 'Colours of the rays' }, ...items);
 }

@@ -38,7 +38,7 @@ export function decimal(value: number): string {
   const sign = value < 0 ? '−' : '';
   if (size >= 1e-4 && size < 1e6) return sign + String(Number(size.toPrecision(size < 1000 ? 4 : 6)));
   const [digits, exponent] = size.toExponential(2).split('e');
-  return `${sign}${Number(digits)} × 10${superscript(Number(exponent))}`;
+  return `${sign}${Number(digits)}\u00a0×\u00a010${superscript(Number(exponent))}`;
 }
 
 function superscript(exponent: number): string {

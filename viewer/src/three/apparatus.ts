@@ -79,7 +79,7 @@ function imagePlane(scene: ViewScene): Mesh<BufferGeometry, ShaderMaterial> {
   geometry.setIndex([0, 1, 3, 0, 3, 2]);
   const material = new ShaderMaterial({
     vertexShader: 'void main() { gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }',
-    fragmentShader: 'uniform vec3 color; void main() { gl_FragColor = vec4(color, 0.1); }',
+    fragmentShader: 'uniform vec3 color; void main() { gl_FragColor = vec4(color, 0.07); }',
     uniforms: { color: { value: new Color() } },
     side: DoubleSide,
     transparent: true,

@@ -1,7 +1,8 @@
 /** The scene and the rays of one sample in 3D. */
 
 import { Vector3 } from 'three';
-import type { Sample, ViewerData } from '../data';
+import type { Sample, ViewerData, ViewScene } from '../data';
+import { element } from '../dom';
 import { rayLine } from '../lines';
 import type { TreeModel } from '../model';
 import type { Theme } from '../theme';
@@ -12,7 +13,7 @@ import { Objects } from './objects';
 import { pick, type PickedLine } from './picking';
 import { type RayState, Rays } from './rays';
 import { Stage } from './stage';
-import { fromLight, overview, throughCamera, type Viewpoint } from './viewpoints';
+import { fromLight, overview, throughCamera } from './viewpoints';
 
 export interface DrawingEvents {
   select(id: number | null): void;
@@ -21,12 +22,14 @@ export interface DrawingEvents {
 
 /** More lines would hide each other. */
 const MAX_RAYS = 400;
+const MAX_NAMES = 24;
 /** Of a ray that leaves the scene, in radii of the drawing. */
 const REACH = 0.55;
 /** Pixels that the pointer may move between down and up in a click. */
 const CLICK = 4;
 
 export class Drawing {
+  readonly root = element('div', { class: 'stage' });
   readonly names: Names;
   readonly stage: Stage;
   private readonly extent: Extent;
@@ -35,6 +38,8 @@ export class Drawing {
   private rays: Rays | null = null;
   private lines: PickedLine[] = [];
   private pressed = new Vector3();
+  /** Nobody has moved the eye: the view may be fitted to a new size. */
+  private atHome = true;
 
   constructor(
     private readonly data: ViewerData,
@@ -45,12 +50,15 @@ export class Drawing {
     this.stage = new Stage(new Vector3(...scene.camera.up).normalize(), this.extent.radius);
     this.objects = new Objects(scene, tree.transfer, this.stage.uniforms);
     this.apparatus = new Apparatus(scene, this.extent, this.stage.uniforms);
-    this.names = new Names(scene, this.extent);
+    this.names = new Names(named(data), this.extent);
     this.stage.scene.add(this.objects.group, this.apparatus.group);
     this.stage.onFrame = () => {
       const { x, y } = this.stage.uniforms.size.value;
       this.names.update(this.stage.camera, x, y);
     };
+    this.root.append(this.stage.canvas, this.names.root);
+    this.stage.onResize = () => this.atHome && this.reset(false);
+    this.stage.onMove = () => (this.atHome = false);
     this.listen(this.stage.canvas);
   }
 
@@ -59,7 +67,7 @@ export class Drawing {
     this.removeRays();
     const drawn = model.strongest(MAX_RAYS);
     const reach = REACH * this.extent.radius;
-    this.rays = new Rays(model, drawn, reach, this.stage.uniforms);
+    this.rays = new Rays(model, drawn, reach, this.data.scene.camera.eye, this.stage.uniforms);
     this.stage.scene.add(this.rays.group);
     this.lines = drawn.map((id) => ({ id, ...rayLine(model.nodes[id]!, reach) }));
     return model.nodes.length - drawn.length;
@@ -77,17 +85,19 @@ export class Drawing {
   }
 
   reset(smoothly: boolean): void {
+    this.atHome = true;
     this.stage.show(overview(this.data.scene.camera, this.extent, this.stage.aspect), smoothly);
   }
 
   lookThroughCamera(): void {
+    this.atHome = false;
     this.stage.show(throughCamera(this.data.scene.camera, this.extent, this.stage.aspect), true);
   }
 
   lookFromLight(index: number): void {
     const { camera, lights } = this.data.scene;
-    const view: Viewpoint = fromLight(lights[index]!, camera, this.extent, this.stage.aspect);
-    this.stage.show(view, true);
+    this.atHome = false;
+    this.stage.show(fromLight(lights[index]!, camera, this.extent, this.stage.aspect), true);
   }
 
   dispose(): void {
@@ -123,6 +133,14 @@ export class Drawing {
     const { x: width, y: height } = uniforms.size.value;
     return pick(this.lines, event.clientX - left, event.clientY - top, projection, width, height);
   }
+}
+
+/** The scene with the objects that get a name: all, or if that would be a crowd those that rays meet. */
+function named({ scene, tree }: ViewerData): ViewScene {
+  if (scene.spheres.length + scene.meshes.length <= MAX_NAMES) return scene;
+  const met = new Set(tree.samples.flatMap(({ nodes }) => nodes.map(({ hit }) => hit?.object)));
+  const isMet = ({ name }: { name: string }) => met.has(name);
+  return { ...scene, spheres: scene.spheres.filter(isMet), meshes: scene.meshes.filter(isMet) };
 }
 
 /** What the drawing must make room for: turning to another sample should not move the eye. */

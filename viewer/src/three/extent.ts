@@ -1,11 +1,13 @@
-/** What the drawing is about: the box around the camera, the rays and what is near them. */
+/** What the drawing is about: the camera, the rays and what is near them. */
 
-import { Box3, Vector3 } from 'three';
+import { Box3, Sphere, Vector3 } from 'three';
 import type { RayNode, Vec3, ViewScene } from '../data';
 
 export interface Extent {
-  /** All that should be seen, the arrows of lights at infinity too. */
-  box: Box3;
+  /** The ends of the rays, and objects; points are spheres without a radius. */
+  things: Sphere[];
+  /** All that should be seen at first: the camera and the lights too. */
+  all: Sphere[];
   center: Vector3;
   radius: number;
 }
@@ -14,37 +16,45 @@ export interface Extent {
 const FAR = 3;
 
 export function extentOf(scene: ViewScene, nodes: RayNode[]): Extent {
-  const { eye, corners } = scene.camera;
-  const rays = new Box3().setFromPoints([eye, ...corners].map((point) => new Vector3(...point)));
-  for (const node of nodes) {
-    rays.expandByPoint(new Vector3(...node.origin));
-    if (node.hit !== null) rays.expandByPoint(new Vector3(...node.hit.point));
-  }
-  const { center, radius } = measured(rays);
-  const near = new Box3(center.clone().subScalar(FAR * radius), center.clone().addScalar(FAR * radius));
-  const box = rays.clone();
-  for (const thing of boxes(scene)) if (near.containsBox(thing)) box.union(thing);
-  const extent = measured(box);
-  for (const { direction } of scene.lights) if (direction !== null) box.expandByPoint(arrowStart(direction, extent));
+  const camera = [scene.camera.eye, ...scene.camera.corners].map(point);
+  const ends = nodes.flatMap(({ hit }) => (hit === null ? [] : [point(hit.point)]));
+  const rays = bounds([...camera, ...ends]);
+  const near = (spheres: Sphere[]) => {
+    const { center, radius } = bounds(spheres);
+    return center.distanceTo(rays.center) + radius <= FAR * rays.radius;
+  };
+  const objects = [...scene.spheres.map(({ center, radius }) => [ball(center, radius)]), ...scene.meshes.map(corners)];
+  const things = [...ends, ...objects.filter(near).flat()];
+  const lamps = scene.lights.flatMap(({ position }) => (position === null ? [] : [point(position)])).filter((lamp) => near([lamp]));
+  const all = [...camera, ...things, ...lamps];
+  const extent = { things: things.length > 0 ? things : camera, all, ...bounds(all) };
+  for (const { direction } of scene.lights) if (direction !== null) all.push(new Sphere(arrowStart(direction, extent), 0));
   return extent;
 }
 
 /** Where the arrow of a light at infinity begins. */
-export function arrowStart(direction: Vec3, extent: Extent): Vector3 {
+export function arrowStart(direction: Vec3, extent: Pick<Extent, 'center' | 'radius'>): Vector3 {
   return extent.center.clone().addScaledVector(new Vector3(...direction).normalize(), extent.radius);
 }
 
-function boxes(scene: ViewScene): Box3[] {
-  const spheres = scene.spheres.map(({ center, radius }) => {
-    const middle = new Vector3(...center);
-    return new Box3(middle.clone().subScalar(radius), middle.clone().addScalar(radius));
-  });
-  const meshes = scene.meshes.map(({ vertices }) => new Box3().setFromArray(vertices));
-  const lights = scene.lights.flatMap(({ position }) => (position ? [new Box3().setFromPoints([new Vector3(...position)])] : []));
-  return [...spheres, ...meshes, ...lights].filter((box) => !box.isEmpty());
+/** The middle and half the diagonal of the box around spheres. */
+export function bounds(spheres: Sphere[]): { center: Vector3; radius: number } {
+  const box = new Box3();
+  for (const sphere of spheres) box.union(sphere.getBoundingBox(new Box3()));
+  const radius = box.getSize(new Vector3()).length() / 2;
+  return { center: box.getCenter(new Vector3()), radius: radius > 0 ? radius : 1 };
 }
 
-function measured(box: Box3): Extent {
-  const radius = box.getSize(new Vector3()).length() / 2;
-  return { box, center: box.getCenter(new Vector3()), radius: radius > 0 ? radius : 1 };
+function corners({ vertices }: { vertices: number[] }): Sphere[] {
+  if (vertices.length === 0) return [];
+  const { min, max } = new Box3().setFromArray(vertices);
+  return [0, 1, 2, 3, 4, 5, 6, 7].map((n) => ball([n & 1 ? max.x : min.x, n & 2 ? max.y : min.y, n & 4 ? max.z : min.z], 0));
+}
+
+function ball(center: Vec3, radius: number): Sphere {
+  return new Sphere(new Vector3(...center), radius);
+}
+
+function point(at: Vec3): Sphere {
+  return ball(at, 0);
 }

@@ -72,7 +72,7 @@ void main() {
     vAcross = vec3(position.y * (half_width + 1.0), half_width, 1.0) * place.w;
   } else {
     place = projectionMatrix * mix(a, b, 0.5);
-    float head = look.w == 2.0 && reach > 40.0 ? 2.5 + 1.5 * look.x : 0.0;
+    float head = look.w == 2.0 && reach > 40.0 ? 3.6 + 0.7 * look.x : 0.0;
     offset = dir * position.x * 1.3 * head + side * position.y * head;
     vAcross = vec3(0.0, 2.0, 1.0) * place.w;
   }

@@ -45,13 +45,17 @@ void main() {
   float facing = abs(dot(normalize(vNormal), normalize(vToEye)));
   float height = gl_FrontFacing ? vHeight : -vHeight;
   float light = 0.5 + 0.5 * height;
-  vec3 shade = color * (0.66 + 0.36 * light) + 0.16 * light * light;
+  // Some of the paper in everything: soft on a light page, not glaring on a dark one.
+  vec3 soft = mix(color, paper, mix(0.36, 0.22, paper.g));
+  vec3 shade = soft * (0.68 + 0.32 * light) + 0.07 * light * light;
   float edge = rim * pow(1.0 - facing, 3.0);
-  // Opaque things fade into the paper at their rim, clear ones gather colour there.
-  vec3 tint = mix(shade, opacity < 1.0 ? color * 0.8 : mix(shade, paper, 0.5), edge);
+  // Opaque things fade into the paper at their rim, clear ones stand out from it there.
+  vec3 outline = opacity < 1.0 ? mix(color, vec3(1.0 - paper.g), 0.2) : mix(shade, paper, 0.5);
+  vec3 tint = mix(shade, outline, edge);
   gl_FragColor = vec4(tint, opacity < 1.0 ? mix(opacity * 0.7, 0.75, edge) : 1.0);
 }`;
 
+const MAX_FINE = 100;
 /** Edges between faces that meet at less than this are smooth, in degrees. */
 const CREASE = 25;
 /** Above, the edges of a mesh would be a web. */
@@ -70,7 +74,8 @@ export class Objects {
   ) {
     this.edges = new LineSet(uniforms);
     const up = new Vector3(...scene.camera.up).normalize();
-    const round = new SphereGeometry(1, 96, 64);
+    // Many spheres are small ones.
+    const round = scene.spheres.length <= MAX_FINE ? new SphereGeometry(1, 96, 64) : new SphereGeometry(1, 24, 16);
     for (const sphere of scene.spheres) {
       const mesh = new Mesh(round, this.material(sphere, up, FrontSide, 1));
       mesh.position.set(...sphere.center);

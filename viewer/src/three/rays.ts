@@ -1,6 +1,7 @@
 /** The rays of a pixel as lines, the selected one and its way through the scene brought forward. */
 
 import { Group } from 'three';
+import type { Vec3 } from '../data';
 import { along, lineOpacity, lineWidth, rayLine, shadowLines } from '../lines';
 import type { TreeModel } from '../model';
 import type { Theme } from '../theme';
@@ -26,6 +27,7 @@ export class Rays {
     private readonly model: TreeModel,
     private readonly drawn: number[],
     private readonly reach: number,
+    private readonly eye: Vec3,
     uniforms: ScreenUniforms,
   ) {
     this.lines = new LineSet(uniforms);
@@ -43,6 +45,7 @@ export class Rays {
     this.lines.set([
       ...[state.selected, state.hovered].flatMap((id) => (id === null ? [] : [this.halo(id, id === state.selected, theme)])),
       ...shaded.flatMap((id) => this.shadows(id, dim(id), theme)),
+      ...this.model.roots.map((id) => this.fromEye(id, dim(id), theme)),
       ...ids.map((id) => this.ray(id, id === state.selected, dim(id), theme)),
       ...(state.selected === null ? [] : this.normal(state.selected, theme)),
     ]);
@@ -52,6 +55,12 @@ export class Rays {
   dispose(): void {
     this.lines.dispose();
     this.marks.dispose();
+  }
+
+  /** Camera rays begin at the image plane; a thin line shows where they come from. */
+  private fromEye(id: number, dim: number, theme: Theme): DrawnLine {
+    const { origin } = this.model.nodes[id]!;
+    return { from: this.eye, to: origin, open: false, color: theme.rays.camera, width: 1.2, opacity: 0.8 * dim };
   }
 
   private ray(id: number, selected: boolean, dim: number, theme: Theme): DrawnLine {
@@ -64,7 +73,7 @@ export class Rays {
 
   private halo(id: number, selected: boolean, theme: Theme): DrawnLine {
     const width = lineWidth(this.model.share(id)) + 10;
-    return { ...rayLine(this.model.nodes[id]!, this.reach), color: theme.accent, width, opacity: selected ? 0.28 : 0.18 };
+    return { ...rayLine(this.model.nodes[id]!, this.reach), color: theme.accent, width, opacity: selected ? 0.4 : 0.25 };
   }
 
   private shadows(id: number, dim: number, theme: Theme): DrawnLine[] {

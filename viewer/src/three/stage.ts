@@ -23,6 +23,9 @@ export class Stage {
   readonly uniforms: ScreenUniforms = { size: { value: new Vector2(1, 1) }, ratio: { value: 1 }, near: { value: 1 } };
   /** After each frame. */
   onFrame: () => void = () => {};
+  onResize: () => void = () => {};
+  /** When a person moves the eye. */
+  onMove: () => void = () => {};
   private readonly renderer: WebGLRenderer;
   private readonly controls: OrbitControls;
   private readonly flight: Flight;
@@ -47,7 +50,10 @@ export class Stage {
     this.controls.rotateSpeed = 0.7;
     this.controls.maxDistance = radius * 40;
     this.controls.addEventListener('change', () => this.requestFrame());
-    this.controls.addEventListener('start', () => this.flight.stop());
+    this.controls.addEventListener('start', () => {
+      this.flight.stop();
+      this.onMove();
+    });
     this.flight = new Flight(this.camera, this.controls);
     this.resizes.observe(this.canvas);
   }
@@ -94,6 +100,7 @@ export class Stage {
     this.uniforms.ratio.value = ratio;
     this.camera.aspect = this.aspect;
     this.camera.updateProjectionMatrix();
+    this.onResize();
     this.requestFrame();
   }
 
@@ -109,6 +116,7 @@ export class Stage {
     event.preventDefault();
     this.flight.stop();
     this.flight.turn(...move);
+    this.onMove();
     this.requestFrame();
   }
 }
