@@ -92,10 +92,14 @@ describe('the drawing', () => {
     const { page, trouble } = await open(browser, colorScheme, glass(), { colorScheme });
     // Fonts differ between machines.
     await page.getByLabel('Names').uncheck();
+    const hide = () => document.querySelector('#app > div')!.shadowRoot!.append(Object.assign(document.createElement('style'), {
+      textContent: '.toolbar, .footer { opacity: 0 }',
+    }));
+    await page.evaluate(hide);
     const shot = async (name: string) => {
       await page.mouse.move(0, 0);
       await settled(page);
-      const screenshot = await page.locator('.stage').screenshot({ style: '.toolbar, .footer { display: none }' });
+      const screenshot = await page.locator('.stage').screenshot();
       expect.soft(difference(`${colorScheme}-${name}`, screenshot), 'see test/out').toBeLessThanOrEqual(TOLERANCE);
     };
     await shot('overview');

@@ -4343,8 +4343,9 @@ void main() {
   float facing = abs(dot(normalize(vNormal), normalize(vToEye)));
   float height = gl_FrontFacing ? vHeight : -vHeight;
   float light = 0.5 + 0.5 * height;
-  // Some of the paper in everything: soft on a light page, not glaring on a dark one.
-  vec3 soft = mix(color, paper, mix(0.36, 0.22, paper.g));
+  // Some of the paper in everything: soft on a light page; on a dark one pale things would outshine the rays.
+  float pale = min(color.r, min(color.g, color.b));
+  vec3 soft = mix(color, paper, mix(0.28 + 0.38 * pale, 0.2, paper.g));
   vec3 shade = soft * (0.68 + 0.32 * light) + 0.07 * light * light;
   float edge = rim * pow(1.0 - facing, 3.0);
   // Opaque things fade into the paper at their rim, clear ones stand out from it there.
