@@ -5,7 +5,8 @@ import type { ViewerData } from './data';
 import { DetailView } from './detail-view';
 import { button, checkbox, element, stroke, swatch } from './dom';
 import { TreeModel } from './model';
-import style from './style.css?inline';
+import frameStyle from './style/frame.css?inline';
+import panelStyle from './style/panel.css?inline';
 import { followTheme, LIGHT, setProperties, type Theme } from './theme';
 import { Drawing } from './three/drawing';
 import { TreeView } from './tree-view';
@@ -50,7 +51,7 @@ export class Viewer {
     // The style of the page and that of the viewer must not meet.
     const root = this.host.attachShadow({ mode: 'open' });
     const sheet = new CSSStyleSheet();
-    sheet.replaceSync(style);
+    sheet.replaceSync(panelStyle + frameStyle);
     root.adoptedStyleSheets = [sheet];
     this.detail = new DetailView(data.tree.transfer);
     this.drawing = this.makeDrawing();
