@@ -91,7 +91,7 @@ varying float vAlong;
 void main() {
   vec2 across = vAcross.xy / vAcross.z;
   float alpha = vColor.a * strength * (1.0 - smoothstep(across.y - 0.5, across.y + 0.7, abs(across.x)));
-  if (vAlong >= 0.0) {
+  if (vAlong > -0.5) {
     float dash = mod(vAlong / vAcross.z, 10.0);
     alpha *= smoothstep(0.0, 1.0, dash) * (1.0 - smoothstep(5.0, 6.0, dash));
   }

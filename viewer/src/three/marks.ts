@@ -36,7 +36,7 @@ void main() {
   float far = length(place);
   float radius = 0.5 * vShape.x;
   float alpha = 1.0 - smoothstep(radius - 0.5, radius + 0.5, far);
-  if (vShape.y == 1.0) {
+  if (vShape.y > 0.5) {
     // A disc, eight short strokes around it, and a glow.
     float turn = 0.7853981634;
     float angle = mod(atan(place.y, place.x) + 0.5 * turn, turn) - 0.5 * turn;

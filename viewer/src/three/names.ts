@@ -5,6 +5,9 @@ import type { ViewScene } from '../data';
 import { element } from '../dom';
 import { arrowStart, type Extent } from './extent';
 
+/** Pixels between a name and the edge of the drawing. */
+const EDGE = 4;
+
 interface Name {
   at: Vector3;
   /** Pixels to the right and down, to stand beside a mark. */
@@ -30,7 +33,10 @@ export class Names {
     for (const { at, offset, label } of this.names) {
       const place = at.clone().project(camera);
       label.hidden = Math.abs(place.z) > 1;
-      const x = ((place.x + 1) / 2) * width + offset[0];
+      const center = ((place.x + 1) / 2) * width;
+      // What is itself in the drawing has its whole name there.
+      const half = center >= 0 && center <= width ? label.offsetWidth / 2 + EDGE : -Infinity;
+      const x = Math.min(width - half, Math.max(half, center + offset[0]));
       const y = ((1 - place.y) / 2) * height + offset[1];
       label.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px) translate(-50%, -50%)`;
     }
