@@ -1,0 +1,86 @@
+/** Dots where rays end, and lamps: marks of a size in pixels. */
+
+import { BufferGeometry, Float32BufferAttribute, Points, ShaderMaterial } from 'three';
+import type { Vec3 } from '../data';
+import { screenColor, type ScreenUniforms } from './line-set';
+
+export interface Mark {
+  at: Vec3;
+  color: string;
+  /** Diameter in pixels. */
+  size: number;
+  opacity: number;
+  lamp?: boolean;
+}
+
+const VERTEX = /* glsl */ `
+uniform float ratio;
+attribute vec3 tint;
+attribute vec3 look; // size, opacity, 1: lamp
+varying vec4 vColor;
+varying vec2 vShape;
+
+void main() {
+  gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+  gl_PointSize = (look.x + 2.0) * ratio;
+  vColor = vec4(tint, look.y);
+  vShape = vec2(look.x, look.z);
+}`;
+
+const FRAGMENT = /* glsl */ `
+varying vec4 vColor;
+varying vec2 vShape;
+
+void main() {
+  vec2 place = (gl_PointCoord - 0.5) * (vShape.x + 2.0);
+  float far = length(place);
+  float radius = 0.5 * vShape.x;
+  float alpha = 1.0 - smoothstep(radius - 0.5, radius + 0.5, far);
+  if (vShape.y > 0.5) {
+    // A disc, eight short strokes around it, and a glow.
+    float turn = 0.7853981634;
+    float angle = mod(atan(place.y, place.x) + 0.5 * turn, turn) - 0.5 * turn;
+    float across = abs(far * sin(angle));
+    float between = smoothstep(0.52 * radius, 0.58 * radius, far) * (1.0 - smoothstep(0.84 * radius, 0.9 * radius, far));
+    float strokes = between * (1.0 - smoothstep(0.6, 1.4, across));
+    float disc = 1.0 - smoothstep(0.36 * radius - 0.5, 0.36 * radius + 0.5, far);
+    float glow = 0.4 * pow(max(0.0, 1.0 - far / radius), 1.5);
+    alpha = max(max(disc, strokes), glow);
+  }
+  gl_FragColor = vec4(vColor.rgb, vColor.a * alpha);
+}`;
+
+export class MarkSet {
+  readonly points: Points<BufferGeometry, ShaderMaterial>;
+
+  constructor(uniforms: ScreenUniforms) {
+    const material = new ShaderMaterial({
+      vertexShader: VERTEX,
+      fragmentShader: FRAGMENT,
+      uniforms: { ...uniforms },
+      transparent: true,
+      depthWrite: false,
+      // A dot on a surface would be cut in half by it.
+      depthTest: false,
+    });
+    this.points = new Points(new BufferGeometry(), material);
+    this.points.frustumCulled = false;
+    this.points.renderOrder = 11;
+  }
+
+  set(marks: Mark[]): void {
+    const geometry = new BufferGeometry();
+    geometry.setAttribute('position', new Float32BufferAttribute(marks.flatMap((mark) => mark.at), 3));
+    geometry.setAttribute('tint', new Float32BufferAttribute(marks.flatMap((mark) => screenColor(mark.color)), 3));
+    const look = marks.flatMap(({ size, opacity, lamp }) => [size, opacity, lamp ? 1 : 0]);
+    geometry.setAttribute('look', new Float32BufferAttribute(look, 3));
+    this.points.geometry.dispose();
+    this.points.geometry = geometry;
+    this.points.visible = marks.length > 0;
+  }
+
+  dispose(): void {
+    this.points.geometry.dispose();
+    this.points.material.dispose();
+  }
+}

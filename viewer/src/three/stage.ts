@@ -1,0 +1,122 @@
+/** A canvas with a camera that people turn; draws only when something has changed. */
+
+import { PerspectiveCamera, Scene, Vector2, Vector3, WebGLRenderer } from 'three';
+import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+import { element } from '../dom';
+import { Flight } from './flight';
+import type { ScreenUniforms } from './line-set';
+import type { Viewpoint } from './viewpoints';
+
+const KEYS: Record<string, [sideways: number, down: number, zoom: number]> = {
+  ArrowLeft: [-0.09, 0, 1],
+  ArrowRight: [0.09, 0, 1],
+  ArrowUp: [0, -0.09, 1],
+  ArrowDown: [0, 0.09, 1],
+  '+': [0, 0, 0.9],
+  '-': [0, 0, 1 / 0.9],
+};
+
+export class Stage {
+  readonly scene = new Scene();
+  readonly canvas = element('canvas', { tabindex: 0 });
+  readonly camera = new PerspectiveCamera();
+  readonly uniforms: ScreenUniforms = { size: { value: new Vector2(1, 1) }, ratio: { value: 1 }, near: { value: 1 } };
+  /** After each frame. */
+  onFrame: () => void = () => {};
+  onResize: () => void = () => {};
+  /** When a person moves the eye. */
+  onMove: () => void = () => {};
+  private readonly renderer: WebGLRenderer;
+  private readonly controls: OrbitControls;
+  private readonly flight: Flight;
+  private readonly resizes = new ResizeObserver(() => this.resize());
+  private readonly calm = window.matchMedia('(prefers-reduced-motion: reduce)');
+  private frame = 0;
+
+  /** Throws where there is no WebGL. `radius` is that of the whole drawing. */
+  constructor(up: Vector3, radius: number) {
+    this.renderer = new WebGLRenderer({ canvas: this.canvas, antialias: true, alpha: true });
+    this.renderer.setClearColor(0, 0);
+    this.camera.up.copy(up);
+    // A near plane much nearer would leave the depth buffer too few steps.
+    this.camera.near = radius / 400;
+    this.camera.far = radius * 100;
+    this.uniforms.near.value = this.camera.near;
+    this.canvas.addEventListener('wheel', (event) => this.keepPageScrolling(event), { capture: true });
+    this.canvas.addEventListener('keydown', (event) => this.onKey(event));
+    this.controls = new OrbitControls(this.camera, this.canvas);
+    this.controls.enableDamping = !this.calm.matches;
+    this.controls.dampingFactor = 0.12;
+    this.controls.rotateSpeed = 0.7;
+    this.controls.maxDistance = radius * 40;
+    this.controls.addEventListener('change', () => this.requestFrame());
+    this.controls.addEventListener('start', () => {
+      this.flight.stop();
+      this.onMove();
+    });
+    this.flight = new Flight(this.camera, this.controls);
+    this.resizes.observe(this.canvas);
+  }
+
+  get aspect(): number {
+    return this.uniforms.size.value.x / this.uniforms.size.value.y;
+  }
+
+  show(view: Viewpoint, smoothly: boolean): void {
+    if (smoothly && !this.calm.matches) this.flight.start(view, performance.now());
+    else this.flight.jump(view);
+    this.requestFrame();
+  }
+
+  requestFrame(): void {
+    if (this.frame === 0) this.frame = requestAnimationFrame((now) => this.draw(now));
+  }
+
+  dispose(): void {
+    cancelAnimationFrame(this.frame);
+    this.resizes.disconnect();
+    this.controls.dispose();
+    this.renderer.dispose();
+    // Browsers allow a page only a few contexts, and a notebook shows many pictures.
+    this.renderer.forceContextLoss();
+  }
+
+  private draw(now: number): void {
+    this.frame = 0;
+    if (this.flight.flying) this.flight.advance(now);
+    else this.controls.update();
+    this.renderer.render(this.scene, this.camera);
+    this.onFrame();
+    if (this.flight.flying) this.requestFrame();
+  }
+
+  private resize(): void {
+    const { clientWidth, clientHeight } = this.canvas;
+    if (clientWidth === 0 || clientHeight === 0) return;
+    const ratio = Math.min(2, window.devicePixelRatio);
+    this.renderer.setPixelRatio(ratio);
+    this.renderer.setSize(clientWidth, clientHeight, false);
+    this.uniforms.size.value.set(clientWidth, clientHeight);
+    this.uniforms.ratio.value = ratio;
+    this.camera.aspect = this.aspect;
+    this.camera.updateProjectionMatrix();
+    this.onResize();
+    this.requestFrame();
+  }
+
+  /** The wheel moves the eye only after a click into the drawing; a page that is read past it scrolls on. */
+  private keepPageScrolling(event: WheelEvent): void {
+    const focused = (this.canvas.getRootNode() as ShadowRoot | Document).activeElement === this.canvas;
+    if (!focused && !event.ctrlKey) event.stopImmediatePropagation();
+  }
+
+  private onKey(event: KeyboardEvent): void {
+    const move = KEYS[event.key === '=' ? '+' : event.key];
+    if (move === undefined || event.ctrlKey || event.metaKey || event.altKey) return;
+    event.preventDefault();
+    this.flight.stop();
+    this.flight.turn(...move);
+    this.onMove();
+    this.requestFrame();
+  }
+}

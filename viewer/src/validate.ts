@@ -1,0 +1,165 @@
+/** Looks at the data before anything is drawn, and names the first thing that is wrong. */
+
+import type { ViewerData } from './data';
+
+/** What is wrong with the data, and where. */
+export class ViewerDataError extends Error {
+  override name = 'ViewerDataError';
+}
+
+/** Throws a `ViewerDataError` unless `value` can be shown. */
+export function validate(value: unknown): asserts value is ViewerData {
+  const data = fields(value, 'data');
+  checkScene(data.scene);
+  checkTree(data.tree);
+}
+
+type Fields = Record<string, unknown>;
+type Check = (value: unknown, path: string) => void;
+
+function checkScene(value: unknown): void {
+  const scene = fields(value, 'scene');
+  version(scene.snell_view, 'scene.snell_view');
+  list(scene.spheres, 'scene.spheres', (item, path) => {
+    const sphere = surface(item, path);
+    triple(sphere.center, `${path}.center`);
+    number(sphere.radius, `${path}.radius`);
+  });
+  list(scene.meshes, 'scene.meshes', (item, path) => {
+    const mesh = surface(item, path);
+    list(mesh.vertices, `${path}.vertices`, number);
+    const vertices = (mesh.vertices as number[]).length / 3;
+    if (!Number.isInteger(vertices)) fail(`${path}.vertices`, 'three numbers for each vertex', mesh.vertices);
+    list(mesh.faces, `${path}.faces`, (corner, at) => position(corner, vertices, at));
+    if ((mesh.faces as number[]).length % 3 !== 0) fail(`${path}.faces`, 'three numbers for each face', mesh.faces);
+  });
+  const camera = fields(scene.camera, 'scene.camera');
+  triple(camera.eye, 'scene.camera.eye');
+  triple(camera.up, 'scene.camera.up');
+  list(camera.corners, 'scene.camera.corners', triple);
+  if ((camera.corners as unknown[]).length !== 4) fail('scene.camera.corners', 'four points', camera.corners);
+  list(scene.lights, 'scene.lights', (item, path) => {
+    const light = fields(item, path);
+    text(light.name, `${path}.name`);
+    triple(light.color, `${path}.color`);
+    if (light.position === null) triple(light.direction, `${path}.direction`);
+    else triple(light.position, `${path}.position`);
+  });
+}
+
+function surface(value: unknown, path: string): Fields {
+  const object = fields(value, path);
+  text(object.name, `${path}.name`);
+  triple(object.color, `${path}.color`);
+  number(object.opacity, `${path}.opacity`);
+  return object;
+}
+
+function checkTree(value: unknown): void {
+  const tree = fields(value, 'tree');
+  version(tree.snell_ray_tree, 'tree.snell_ray_tree');
+  for (const key of ['scene', 'integrator', 'sentence']) text(tree[key], `tree.${key}`);
+  for (const key of ['pixel', 'size']) {
+    list(tree[key], `tree.${key}`, number);
+    if ((tree[key] as unknown[]).length !== 2) fail(`tree.${key}`, 'two numbers', tree[key]);
+  }
+  triple(tree.color, 'tree.color');
+  choice(tree.transfer, ['srgb', 'linear'], 'tree.transfer');
+  number(tree.spp, 'tree.spp');
+  list(tree.samples, 'tree.samples', (item, path) => {
+    const sample = fields(item, path);
+    triple(sample.color, `${path}.color`);
+    triple(sample.lost, `${path}.lost`);
+    let next = 0;
+    list(sample.nodes, `${path}.nodes`, (node, at) => checkNode(node, next++, at));
+  });
+  if ((tree.samples as unknown[]).length === 0) fail('tree.samples', 'at least one sample', tree.samples);
+}
+
+function checkNode(value: unknown, id: number, path: string): void {
+  const node = fields(value, path);
+  if (node.id !== id) fail(`${path}.id`, `${id}, its place in the list`, node.id);
+  if (node.parent !== null) position(node.parent, id, `${path}.parent`);
+  choice(node.kind, ['camera', 'mirror', 'refracted', 'inside'], `${path}.kind`);
+  text(node.medium, `${path}.medium`);
+  for (const key of ['depth', 'eta']) number(node[key], `${path}.${key}`);
+  for (const key of ['origin', 'dir', 'throughput', 'contribution', 'subtotal']) triple(node[key], `${path}.${key}`);
+  optional(number)(node.band_nm, `${path}.band_nm`);
+  optional(triple)(node.bound, `${path}.bound`);
+  if (node.ended !== null) choice(node.ended, ['missed', 'depth', 'threshold', 'absorbed', 'rays'], `${path}.ended`);
+  optional(checkHit)(node.hit, `${path}.hit`);
+  optional(checkLocal)(node.local, `${path}.local`);
+}
+
+function checkHit(value: unknown, path: string): void {
+  const hit = fields(value, path);
+  for (const key of ['object', 'material']) text(hit[key], `${path}.${key}`);
+  for (const key of ['primitive', 't', 'angle_in', 'eta_before', 'eta_behind']) number(hit[key], `${path}.${key}`);
+  for (const key of ['point', 'normal']) triple(hit[key], `${path}.${key}`);
+  optional(number)(hit.angle_out, `${path}.angle_out`);
+  flag(hit.total_reflection, `${path}.total_reflection`);
+}
+
+function checkLocal(value: unknown, path: string): void {
+  const local = fields(value, path);
+  triple(local.ambient, `${path}.ambient`);
+  triple(local.emission, `${path}.emission`);
+  list(local.lights, `${path}.lights`, (item, at) => {
+    const light = fields(item, at);
+    text(light.name, `${at}.name`);
+    for (const key of ['facing', 'at_infinity']) flag(light[key], `${at}.${key}`);
+    for (const key of ['transmittance', 'diffuse', 'highlight', 'point']) triple(light[key], `${at}.${key}`);
+    optional(text)(light.blocked_by, `${at}.blocked_by`);
+    optional(triple)(light.block_point, `${at}.block_point`);
+  });
+}
+
+function fields(value: unknown, path: string): Fields {
+  if (typeof value !== 'object' || value === null || Array.isArray(value)) fail(path, 'an object', value);
+  return value as Fields;
+}
+
+function list(value: unknown, path: string, check: Check): void {
+  if (!Array.isArray(value)) fail(path, 'a list', value);
+  value.forEach((item, index) => check(item, `${path}[${index}]`));
+}
+
+function optional(check: Check): Check {
+  return (value, path) => value === null || check(value, path);
+}
+
+function number(value: unknown, path: string): void {
+  if (!Number.isFinite(value)) fail(path, 'a number', value);
+}
+
+function text(value: unknown, path: string): void {
+  if (typeof value !== 'string') fail(path, 'a text', value);
+}
+
+function flag(value: unknown, path: string): void {
+  if (typeof value !== 'boolean') fail(path, 'true or false', value);
+}
+
+function triple(value: unknown, path: string): void {
+  if (!Array.isArray(value) || value.length !== 3 || !value.every(Number.isFinite)) fail(path, 'three numbers', value);
+}
+
+function choice(value: unknown, choices: string[], path: string): void {
+  if (!choices.includes(value as string)) fail(path, `one of ${choices.join(', ')}`, value);
+}
+
+/** A place in a list of which `length` items are known. */
+function position(value: unknown, length: number, path: string): void {
+  if (!Number.isInteger(value) || (value as number) < 0 || (value as number) >= length) {
+    fail(path, `a whole number from 0 to ${length - 1}`, value);
+  }
+}
+
+function version(value: unknown, path: string): void {
+  if (value !== 1) fail(path, 'version 1 (take the viewer that comes with the snell that wrote this)', value);
+}
+
+function fail(path: string, expected: string, found: unknown): never {
+  const shown = found === undefined ? 'nothing' : (JSON.stringify(found) ?? String(found));
+  throw new ViewerDataError(`${path}: expected ${expected}, found ${shown.length > 60 ? `${shown.slice(0, 60)}…` : shown}`);
+}
