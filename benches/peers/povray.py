@@ -113,7 +113,7 @@ def knot(nu: int, nv: int, r: float) -> tuple[list[Vector], list[Vector], list[t
 
 
 def glass_knot(shadows: str) -> str:
-    """Glass without highlights, as Snell's is. It takes nothing from light that falls through it, so that `no_shadow` leaves
+    """Glass without highlights, like that of Snell. It takes nothing from light that goes through: `no_shadow` leaves
     the picture as it is, and only spares the work."""
     text = HEAD.format(level=8, ambient=0, background="<.4,.55,.8>")
     text += "camera { perspective location <6,-5,4.5> right -x up y angle 50 sky z look_at <0,0,0> }\n"

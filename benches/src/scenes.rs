@@ -4,9 +4,7 @@ use crate::flake::{self, Ball};
 use crate::{knot, spheres};
 use snell::film::Rgb;
 use snell::geometry::TriangleMesh;
-use snell::scene::{
-    Camera, Integrator, Light, Material, Mesh, Render, Rounding, SCHEMA_VERSION, Scene, Shadows, Sphere, Transfer,
-};
+use snell::scene::{Camera, Integrator, Light, Material, Mesh, Render, Scene, Shadows, Sphere};
 use snell_formats::{LoadOptions, load};
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -97,46 +95,19 @@ fn scattered(count: u32, size: u32) -> Scene {
 }
 
 fn scene(max_depth: u32, camera: Camera, size: u32) -> Scene {
-    Scene {
-        snell: SCHEMA_VERSION,
-        schema: None,
-        ambient: Rgb::black(),
-        eta_outside: 1.0,
-        background: Rgb::gray(0.0),
-        render: Render {
-            integrator: Integrator::Course2018,
-            size: [size, size],
-            max_depth,
-            min_throughput: snell::scene::MIN_THROUGHPUT,
-            bands: snell::scene::BANDS,
-            shadows: Shadows::Opaque,
-            transfer: Transfer::Srgb,
-            rounding: Rounding::Round,
-        },
-        camera,
-        lights: Vec::new(),
-        materials: [].into(),
-        spheres: Vec::new(),
-        meshes: Vec::new(),
-    }
+    Scene::new(Render { max_depth, ..Render::new(Integrator::Course2018, [size, size]) }, camera)
 }
 
 /// A camera that looks at the origin, z up, with a field of view in degrees. Other programs look through the middles of
 /// pixels and Snell through a grid whose corners are the corners of `bounds`: these lie half a pixel further in.
 fn camera(eye: [f64; 3], fov: f64, size: u32) -> Camera {
     let edge = libm::tan(fov / 2.0 * PI / 180.0) * (1.0 - 1.0 / f64::from(size));
-    Camera {
-        eye,
-        look_at: [0.0; 3],
-        up: [0.0, 0.0, 1.0],
-        bounds: [-edge, edge, -edge, edge],
-        near: -1.0, // nothing of these scenes is nearer to the eye
-        far: None,
-    }
+    // Nothing of these scenes is nearer to the eye than 1.
+    Camera::new(eye, [0.0; 3], [0.0, 0.0, 1.0], [-edge, edge, -edge, edge], -1.0)
 }
 
 fn light(position: [f64; 3], color: Rgb) -> Light {
-    Light { name: None, position: Some(position), direction: None, color }
+    Light::at(position, color)
 }
 
 fn part_mirror() -> Material {
@@ -144,7 +115,7 @@ fn part_mirror() -> Material {
 }
 
 fn sphere(ball: &Ball, material: &str) -> Sphere {
-    Sphere { name: None, center: ball.center.into(), radius: ball.radius, material: material.to_owned() }
+    Sphere::new(ball.center.into(), ball.radius, material)
 }
 
 fn mesh(geometry: Arc<TriangleMesh>, material: &str) -> Mesh {

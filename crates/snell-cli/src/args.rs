@@ -7,7 +7,7 @@ use serde::de::value::{Error as ValueError, StrDeserializer};
 use snell::film::Crop;
 use snell::geometry::bvh::Quality;
 use snell::lanes::LaneWidth;
-use snell::scene::{Integrator, MAX_DEPTH, Rounding, Shadows, Transfer};
+use snell::scene::{Integrator, MAX_DEPTH, MAX_SPP, Rounding, Shadows, Transfer};
 use snell_formats::driver::Dialect;
 use std::path::PathBuf;
 
@@ -70,7 +70,7 @@ pub struct RenderArgs {
     pub format: String,
     /// Render a picture again, from what a PNG or EXR of Snell remembers
     #[arg(long, value_name = "PICTURE", conflicts_with_all = [
-        "scenes", "size", "stretch", "crop", "depth", "integrator", "shadows", "transfer", "rounding", "set", "dialect",
+        "scenes", "size", "stretch", "crop", "spp", "depth", "integrator", "shadows", "transfer", "rounding", "set", "dialect",
     ])]
     pub from: Option<PathBuf>,
 
@@ -83,6 +83,9 @@ pub struct RenderArgs {
     /// Only this part: left, top, width, height in pixels
     #[arg(long, value_name = "X,Y,W,H", value_parser = crop, help_heading = "Picture")]
     pub crop: Option<Crop>,
+    /// Samples per pixel: 1 is the point of the grid, 16 make smooth edges
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SPP)), help_heading = "Picture")]
+    pub spp: Option<u32>,
     /// The curve to 8 and 16 bit: linear or srgb
     #[arg(long, value_name = "CURVE", value_parser = named::<Transfer>, help_heading = "Picture")]
     pub transfer: Option<Transfer>,
@@ -99,10 +102,10 @@ pub struct RenderArgs {
     /// How many bounces may follow the camera ray, at most 1000
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=i64::from(MAX_DEPTH)), help_heading = "Light")]
     pub depth: Option<u32>,
-    /// The model of light: lecture, course2018 or course2020
+    /// The model of light: lecture, course2018, course2020 or whitted
     #[arg(long, value_name = "NAME", value_parser = named::<Integrator>, help_heading = "Light")]
     pub integrator: Option<Integrator>,
-    /// What blocks a light: off (nothing) or opaque (anything)
+    /// What blocks a light: off (nothing), opaque (anything) or tinted (what is transparent dims it)
     #[arg(long, value_name = "KIND", value_parser = named::<Shadows>, help_heading = "Light")]
     pub shadows: Option<Shadows>,
 

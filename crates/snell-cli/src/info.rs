@@ -67,7 +67,7 @@ fn about_picture(picture: &Picture, args: &InfoArgs) -> Outcome {
 const SHOWN: usize = 20;
 
 fn about_scene(loaded: &Loaded, world: &World) -> String {
-    let Scene { render, camera, lights, materials, spheres, meshes, .. } = &loaded.scene;
+    let Scene { render, camera, lights, materials, spheres, meshes, planes, boxes, lathes, .. } = &loaded.scene;
     let mut text = format!("{}\n", loaded.source.name);
     let mut line = |name: &str, value: String| {
         let _ = writeln!(text, "  {name:12}{value}");
@@ -84,7 +84,11 @@ fn about_scene(loaded: &Loaded, world: &World) -> String {
         "picture",
         format!("{} x {}, {}, {}", render.size[0], render.size[1], name(&render.transfer), name(&render.rounding)),
     );
-    line("camera", format!("at {:?}, looks at {:?}, bounds {:?}", camera.eye, camera.look_at, camera.bounds));
+    let view = match (camera.bounds, camera.fov) {
+        (None, Some(fov)) => format!("angle of view {fov} degrees"),
+        _ => format!("bounds {:?}", camera.window(render.size)),
+    };
+    line("camera", format!("at {:?}, looks at {:?}, {view}", camera.eye, camera.look_at));
     for (i, light) in lights.iter().enumerate() {
         let place = match (light.position, light.direction) {
             (Some(p), _) => format!("at {p:?}"),
@@ -110,6 +114,11 @@ fn about_scene(loaded: &Loaded, world: &World) -> String {
         let faces = mesh.geometry.as_ref().map_or(mesh.faces.len(), |g| g.faces.len());
         let title = path.as_ref().map_or("written out".to_owned(), |p| p.display().to_string());
         line("mesh", format!("{title}: {faces} triangles"));
+    }
+    for (kind, count) in [("plane", planes.len()), ("box", boxes.len()), ("lathe", lathes.len())] {
+        if count > 0 {
+            line(kind, count.to_string());
+        }
     }
     let memory = short(world.memory() as f64);
     line("world", format!("{} primitives, {memory}B", world.primitive_count()));

@@ -33,6 +33,8 @@ pub struct Recipe {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub crop: Option<Crop>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub spp: Option<u32>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub depth: Option<u32>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub integrator: Option<Integrator>,
@@ -78,6 +80,7 @@ impl Recipe {
             size: args.size,
             stretch: args.stretch,
             crop: args.crop,
+            spp: args.spp,
             depth: args.depth,
             integrator: args.integrator,
             shadows: args.shadows,
@@ -130,6 +133,7 @@ impl Recipe {
     /// Puts the settings into the scene. Returns a note if the bounds were widened.
     pub fn apply(&self, scene: &mut Scene) -> Option<String> {
         let render = &mut scene.render;
+        render.spp = self.spp.unwrap_or(render.spp);
         render.max_depth = self.depth.unwrap_or(render.max_depth);
         render.integrator = self.integrator.unwrap_or(render.integrator);
         render.shadows = self.shadows.unwrap_or(render.shadows);
@@ -137,7 +141,8 @@ impl Recipe {
         render.rounding = self.rounding.unwrap_or(render.rounding);
         let size = self.size?;
         let before = std::mem::replace(&mut render.size, size);
-        if self.stretch { None } else { widen(&mut scene.camera.bounds, before, size) }
+        let bounds = scene.camera.bounds.as_mut().filter(|_| !self.stretch)?;
+        widen(bounds, before, size)
     }
 }
 

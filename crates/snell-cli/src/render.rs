@@ -337,6 +337,21 @@ fn summary(
             pixel / width,
         );
     }
+    if let Some(overlap) = &statistics.overlaps.first {
+        let width = u64::from(world.camera.size[0]);
+        let name = |primitive: u32| world.object_of(primitive).map_or("?", |object| object.name.as_str());
+        let ([a, b], p) = (overlap.primitives.map(name), overlap.point);
+        eprintln!(
+            "  {}: `{a}` and `{b}` overlap with the same priority, first seen at ({}, {}, {}) in pixel {},{}: the one \
+             entered last is there; give one of their materials a higher `priority`",
+            WarningCode::Overlap.code(),
+            p.x,
+            p.y,
+            p.z,
+            overlap.pixel % width,
+            overlap.pixel / width,
+        );
+    }
 }
 
 /// Refuses a film that would not fit into the memory that is free, where the system says how much that is.

@@ -25,7 +25,7 @@ fn built_in_scenes_render_from_anywhere_and_can_be_saved() {
     let list = stdout(&run(at, &["scenes"]));
     let names: Vec<&str> =
         list.lines().filter_map(|l| l.split_whitespace().next()).filter(|n| n.contains('/')).collect();
-    assert_eq!(names.len(), 18, "15 of the lecture, 3 of the gallery: {list}");
+    assert_eq!(names.len(), 24, "15 of the lecture, 9 of the gallery: {list}");
     render(at, &[&names, TINY, &["-o", "out/"]].concat());
     assert_eq!(fs::read_dir(at.join("out")).unwrap().count(), names.len());
 

@@ -27,8 +27,14 @@ scenes![
     "lecture/wide",
     "lecture/quarter",
     "gallery/ball",
-    "gallery/bubbles",
+    "gallery/ice",
     "gallery/prism",
+    "gallery/brilliant",
+    "gallery/bubbles",
+    "gallery/window",
+    "gallery/lens",
+    "gallery/plates",
+    "gallery/pencil",
 ];
 
 /// The text of a built-in scene.

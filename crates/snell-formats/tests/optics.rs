@@ -2,95 +2,17 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-use snell::film::{Film, Rgb};
+mod common;
+
+use common::{ball, furnace, glass, mesh, picture, straight_through, traced, tree};
+use snell::film::Rgb;
 use snell::geometry::{TriangleMesh, Vec3};
-use snell::render::{Options, render, trace_pixel};
-use snell::scene::{
-    Camera, Integrator, Material, Mesh, Render, Rounding, SCHEMA_VERSION, Scene, Shadows, Sphere, Transfer,
-};
-use snell::trace::{RayKind, RayTree};
+use snell::scene::{Material, Scene, Shadows};
+use snell::trace::RayKind;
 use snell::world::World;
 use snell_test_scenes::glass::{blocks, bubbles, cuboid, marbles};
 use snell_test_scenes::lecture;
 use std::sync::Arc;
-
-/// An empty white room, seen along −z.
-fn furnace(size: u32) -> Scene {
-    Scene {
-        snell: SCHEMA_VERSION,
-        schema: None,
-        ambient: Rgb::gray(0.0),
-        background: Rgb::gray(1.0),
-        eta_outside: 1.0,
-        render: Render {
-            integrator: Integrator::Whitted,
-            size: [size, size],
-            max_depth: 32,
-            min_throughput: 1.0 / 4096.0,
-            bands: snell::scene::BANDS,
-            shadows: Shadows::Opaque,
-            transfer: Transfer::Linear,
-            rounding: Rounding::Round,
-        },
-        camera: Camera {
-            eye: [0.0, 0.0, 10.0],
-            look_at: [0.0; 3],
-            up: [0.0, 1.0, 0.0],
-            bounds: [-2.0, 2.0, -2.0, 2.0],
-            near: -5.0,
-            far: None,
-        },
-        lights: vec![],
-        materials: [].into(),
-        spheres: vec![],
-        meshes: vec![],
-    }
-}
-
-fn glass(scene: &mut Scene, name: &str, eta: f64, priority: i32) {
-    let material = Material { ko: Rgb::gray(0.0), eta, priority, ..Material::default() };
-    scene.materials.insert(name.to_owned(), material);
-}
-
-fn ball(scene: &mut Scene, center: [f64; 3], radius: f64, material: &str) {
-    scene.spheres.push(Sphere { name: None, center, radius, material: material.to_owned() });
-}
-
-fn mesh(scene: &mut Scene, geometry: TriangleMesh, material: &str) {
-    let geometry = Some(Arc::new(geometry));
-    scene.meshes.push(Mesh { geometry, material: Some(material.to_owned()), ..Mesh::default() });
-}
-
-fn picture(scene: &Scene) -> Film {
-    render(&World::new(scene).unwrap(), &Options::default()).unwrap().film
-}
-
-/// The tree of the ray that starts at `origin` in direction `dir`: a picture of one pixel.
-fn tree(scene: &Scene, origin: [f64; 3], dir: [f64; 3]) -> RayTree {
-    let mut scene = scene.clone();
-    scene.render.size = [1, 1];
-    let (start, dir) = (Vec3::from(origin), Vec3::from(dir).unit());
-    let eye = start - dir;
-    let up = if dir.y.abs() > 0.9 { [0.0, 0.0, 1.0] } else { [0.0, 1.0, 0.0] };
-    scene.camera = Camera {
-        eye: [eye.x, eye.y, eye.z],
-        look_at: origin,
-        up,
-        bounds: [-1.0, 1.0, -1.0, 1.0],
-        near: -1.0,
-        far: None,
-    };
-    trace_pixel(&World::new(&scene).unwrap(), 0, 0).unwrap().1
-}
-
-/// Origin and direction of the ray that was refracted at every interface, and how often.
-fn straight_through(tree: &RayTree) -> (Vec3, Vec3, usize) {
-    let (mut at, mut count) = (0, 0);
-    while let Some(next) = tree.nodes.iter().position(|n| n.parent == Some(at) && n.kind == RayKind::Refracted) {
-        (at, count) = (next, count + 1);
-    }
-    (tree.nodes[at].origin, tree.nodes[at].dir, count)
-}
 
 /// Nothing is lost and nothing is made: in a white room clear glass of any shape and nesting looks white, but for the
 /// branches that were cut off, which are counted.
@@ -116,7 +38,7 @@ fn a_white_furnace_stays_white() {
             scene.render.max_depth = depth;
             let world = World::new(&scene).unwrap();
             for pixel in 0..24 * 24 {
-                let (radiance, tree) = trace_pixel(&world, pixel % 24, pixel / 24).unwrap();
+                let (radiance, tree) = traced(&world, pixel % 24, pixel / 24);
                 assert_eq!(radiance, tree.sum());
                 let whole = radiance + tree.lost;
                 for channel in whole.to_array() {
@@ -182,7 +104,7 @@ fn scaled(scene: &Scene, map: impl Fn(f64) -> f64, factor: f64) -> Scene {
     let mut scene = scene.clone();
     (scene.camera.eye, scene.camera.look_at) = (scene.camera.eye.map(&map), scene.camera.look_at.map(&map));
     scene.camera.near *= factor;
-    scene.camera.bounds = scene.camera.bounds.map(|b| b * factor);
+    scene.camera.bounds = scene.camera.bounds.map(|bounds| bounds.map(|b| b * factor));
     for light in &mut scene.lights {
         light.position = light.position.map(|p| p.map(&map));
     }
@@ -404,63 +326,13 @@ fn a_camera_in_water_looks_out_through_one_face() {
     glass(&mut scene, "water", 1.33, 0);
     ball(&mut scene, [0.0, 0.0, 10.0], 8.0, "water");
     let world = World::new(&scene).unwrap();
-    let (_, tree) = trace_pixel(&world, 8, 8).unwrap();
+    let (_, tree) = traced(&world, 8, 8);
     let r = (0.33f64 / 2.33) * (0.33 / 2.33);
     let first = tree.nodes.iter().find(|n| n.kind == RayKind::Refracted).unwrap();
     // Nearly straight on: the reflectance has no slope there.
     assert!((first.throughput.r - (1.0 - r)).abs() < 1e-3 && first.depth == 1);
     let whole = tree.sum() + tree.lost;
     assert!((whole.g - 1.0).abs() < 1e-12);
-}
-
-/// The objects that a pixel of a built-in scene shows, from the strongest refracted or direct contribution on.
-fn shown(name: &str, size: [u32; 2], pixel: [u32; 2]) -> (Vec<String>, RayTree) {
-    let mut scene = lecture(name, 1);
-    scene.render.size = size;
-    let world = World::new(&scene).unwrap();
-    let (_, tree) = trace_pixel(&world, pixel[0], pixel[1]).unwrap();
-    let mut nodes: Vec<_> = tree.nodes.iter().filter(|n| n.contribution.mean() > 0.0).collect();
-    nodes.sort_by(|a, b| b.contribution.mean().total_cmp(&a.contribution.mean()));
-    let name = |n: &&snell::trace::Node| {
-        n.hit.and_then(|(primitive, ..)| world.object_of(primitive)).map_or("sky".to_owned(), |o| o.name.clone())
-    };
-    (nodes.iter().map(name).collect(), tree)
-}
-
-/// Outside the ball the sky is above and the tiles are below; in it, the other way round, and left and right are swapped.
-#[test]
-fn in_the_ball_of_the_gallery_the_world_stands_on_its_head() {
-    let seen = |x: u32, y: u32| shown("gallery/ball", [384, 256], [x, y]).0[0].clone();
-    assert_eq!([seen(20, 40), seen(330, 60)], ["sky", "sky"]);
-    assert!([seen(20, 200), seen(330, 200)].iter().all(|s| s.ends_with("tiles")));
-    // In the ball, whose middle is at 192, 125.
-    assert!([seen(192, 72), seen(170, 80)].iter().all(|s| s.ends_with("tiles")));
-    assert_eq!([seen(172, 170), seen(212, 172)], ["sky", "sky"]);
-    // The orange post stands left of the ball and is seen in its right half.
-    let row = |from: u32, to: u32| (from..to).map(|x| seen(x, 128)).collect::<Vec<_>>();
-    let (left, right) = (row(130, 190), row(194, 254));
-    assert!(left.contains(&"green post".to_owned()) && !left.contains(&"orange post".to_owned()), "{left:?}");
-    assert!(right.contains(&"orange post".to_owned()) && !right.contains(&"green post".to_owned()), "{right:?}");
-    // The knobs are below their posts.
-    assert_eq!(seen(192, 158), "white knob");
-    assert_eq!(seen(192, 115), "white post");
-}
-
-/// At the rim of a bubble everything is reflected, and in its middle nearly nothing.
-#[test]
-fn bubbles_have_bright_rims() {
-    let at = |x: u32, y: u32| {
-        let (_, tree) = shown("gallery/bubbles", [640, 640], [x, y]);
-        // The first ray within the water, and what it becomes at the bubble.
-        let inside = tree.nodes.iter().position(|n| n.depth == 1 && n.kind == RayKind::Refracted).unwrap();
-        let of = |kind: RayKind| tree.nodes.iter().find(|n| n.parent == Some(inside) && n.kind == kind);
-        let mirrored = of(RayKind::Mirror).map_or(0.0, |n| n.throughput.g);
-        let refracted = of(RayKind::Refracted).map_or(0.0, |n| n.throughput.g);
-        mirrored / (mirrored + refracted)
-    };
-    // Bubble 1 has its middle near 302, 383 and a radius of 60 pixels.
-    assert!(at(302, 383) < 0.03, "{}", at(302, 383));
-    assert!([at(302, 328), at(249, 383), at(302, 438)].contains(&1.0));
 }
 
 /// Without dispersion nothing splits: the same bits. With next to none, the same picture.
@@ -500,27 +372,11 @@ fn a_white_furnace_stays_white_with_dispersion() {
     ball(&mut scene, [1.0, 0.5, 1.0], 0.8, "flint");
     let world = World::new(&scene).unwrap();
     for pixel in 0..144 {
-        let (_, tree) = trace_pixel(&world, pixel % 12, pixel / 12).unwrap();
+        let (_, tree) = traced(&world, pixel % 12, pixel / 12);
         let whole = tree.sum() + tree.lost;
         // As without dispersion; the weights of the bands add up to one exactly.
         assert!(whole.to_array().iter().all(|c| (c - 1.0).abs() < 1e-12), "{whole:?} at {pixel}");
     }
-}
-
-/// Red is bent least, violet most.
-#[test]
-fn the_prism_of_the_gallery_shows_the_colours_in_order() {
-    let mut scene = lecture("gallery/prism", 1);
-    scene.render.size = [320, 240];
-    let world = World::new(&scene).unwrap();
-    let crop = Some(snell::film::Crop { x: 90, y: 90, width: 80, height: 1 });
-    let row = render(&world, &Options { crop, ..Options::default() }).unwrap().film.pixels;
-    let peak =
-        |value: fn(&Rgb) -> f64| (0..row.len()).max_by(|&a, &b| value(&row[a]).total_cmp(&value(&row[b]))).unwrap();
-    let (red, green, blue) = (peak(|c| c.r - c.g - c.b), peak(|c| c.g - c.r - c.b), peak(|c| c.b - c.r - c.g));
-    assert!(blue + 5 < green && green + 5 < red, "{blue} {green} {red}");
-    let violet = row[..blue].iter().filter(|c| c.b > c.r && c.r > c.g && c.b > 0.3).count();
-    assert!(violet > 3, "beyond blue there is violet");
 }
 
 /// An opaque surface in the same place as glass is seen, whichever stands first in the scene.
@@ -615,4 +471,23 @@ fn a_gel_dyes_what_goes_through() {
     scene.lights = vec![light];
     let floor = tree(&scene, [0.3, -1.5, 0.2], [0.0, -1.0, 0.0]).sum();
     assert_eq!(floor, gel.kd);
+}
+
+/// The table of the documentation, computed anew with the engine's own refraction.
+#[test]
+fn the_published_table_of_angles_is_exact() {
+    let page = include_str!("../../../docs/models.md");
+    let angle = |cell: &str| cell.trim().trim_end_matches('°').parse::<f64>().unwrap();
+    let rows = page.lines().filter(|line| line.contains('°') && line.matches('|').count() == 4);
+    let mut count = 0;
+    for line in rows.filter(|line| line.chars().nth(2).is_some_and(|c| c.is_ascii_digit())) {
+        let [theta, small, exact] = [1, 2, 3].map(|i| angle(line.split('|').nth(i).unwrap()));
+        let (sin, cos) = libm::sincos(theta.to_radians());
+        let (inside, _) = snell::optics::snell::refract(Vec3::new(-sin, cos, 0.0), Vec3::new(0.0, 1.0, 0.0), 1.0 / 1.5);
+        // One digit is printed.
+        assert!((libm::atan2(inside.x, -inside.y).to_degrees() - exact).abs() < 0.05, "{line}");
+        assert!((theta / 1.5 - small).abs() < 0.05, "{line}");
+        count += 1;
+    }
+    assert_eq!(count, 10);
 }

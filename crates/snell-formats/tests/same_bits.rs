@@ -169,9 +169,10 @@ fn the_recorded_tree_of_every_pixel_adds_up_to_the_film() {
         let [width, height] = scene.render.size;
         for y in 0..height {
             for x in 0..width {
-                let (radiance, tree) = trace_pixel(&world, x, y).unwrap();
+                let pixel = trace_pixel(&world, x, y).unwrap();
+                let [tree] = pixel.samples.as_slice() else { panic!("one sample, one tree") };
                 let film = rendered.film.pixels[(y * width + x) as usize];
-                assert_eq!((tree.sum(), radiance), (film, film), "{name} at {x},{y}");
+                assert_eq!((pixel.sum(), pixel.radiance), (film, film), "{name} at {x},{y}");
                 for (i, node) in tree.nodes.iter().enumerate() {
                     match node.parent {
                         None => assert_eq!((i, node.depth), (0, 0)),
@@ -194,7 +195,7 @@ fn a_generation_that_is_split_changes_nothing() {
     let largest = whole.statistics.depth.iter().max().copied().unwrap();
     assert!(largest > 1 << 17, "one tile, a budget of 2^16 rays, and not split: {:?}", whole.statistics.depth);
     for (x, y) in [(12, 12), (5, 20), (18, 7)] {
-        let (alone, _) = trace_pixel(&world, x, y).unwrap();
+        let alone = trace_pixel(&world, x, y).unwrap().radiance;
         assert_eq!(alone, whole.film.pixels[(y * 24 + x) as usize]);
     }
     let small = render(&world, &Options { tile_size: 8, ..Options::default() }).unwrap();

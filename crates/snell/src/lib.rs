@@ -12,36 +12,15 @@
 //! ```
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! use snell::film::Rgb;
-//! use snell::scene::{Camera, Integrator, Light, Material, Render, Rounding, Scene, Shadows, Sphere, Transfer};
+//! use snell::scene::{Camera, Integrator, Light, Material, Render, Scene, Sphere};
 //!
+//! let camera = Camera::new([0.0, 0.0, 10.0], [0.0; 3], [0.0, 1.0, 0.0], [-1.0, 1.0, -1.0, 1.0], -5.0);
 //! let scene = Scene {
-//!     snell: 1,
-//!     schema: None,
 //!     ambient: Rgb::gray(0.2),
-//!     background: Rgb::gray(0.0),
-//!     eta_outside: 1.0,
-//!     render: Render {
-//!         integrator: Integrator::Lecture,
-//!         size: [32, 32],
-//!         max_depth: 6,
-//!         min_throughput: snell::scene::MIN_THROUGHPUT,
-//!         bands: snell::scene::BANDS,
-//!         shadows: Shadows::Opaque,
-//!         transfer: Transfer::Linear,
-//!         rounding: Rounding::Round,
-//!     },
-//!     camera: Camera {
-//!         eye: [0.0, 0.0, 10.0],
-//!         look_at: [0.0, 0.0, 0.0],
-//!         up: [0.0, 1.0, 0.0],
-//!         bounds: [-1.0, 1.0, -1.0, 1.0],
-//!         near: -5.0,
-//!         far: None,
-//!     },
-//!     lights: vec![Light { name: None, position: Some([5.0, 5.0, 5.0]), direction: None, color: Rgb::gray(1.0) }],
+//!     lights: vec![Light::at([5.0, 5.0, 5.0], Rgb::gray(1.0))],
 //!     materials: [("red".to_owned(), Material { kd: Rgb::new(1.0, 0.0, 0.0), ..Material::default() })].into(),
-//!     spheres: vec![Sphere { name: None, center: [0.0; 3], radius: 1.0, material: "red".to_owned() }],
-//!     meshes: vec![],
+//!     spheres: vec![Sphere::new([0.0; 3], 1.0, "red")],
+//!     ..Scene::new(Render::new(Integrator::Lecture, [32, 32]), camera)
 //! };
 //! let world = snell::world::World::new(&scene).map_err(|problems| problems[0].to_string())?;
 //! let rendered = snell::render::render(&world, &snell::render::Options::default())?;

@@ -186,46 +186,15 @@ impl Kernel for Any<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::film::Rgb;
-    use crate::film::transfer::{Rounding, Transfer};
-    use crate::scene::{Camera, Integrator, Material, Render, Scene, Shadows, Sphere};
+    use crate::scene::{Camera, Integrator, Material, Render, Scene, Sphere};
 
     /// Thirty spheres of radius 1 in a row along z, ten apart.
     fn spheres() -> World {
-        let sphere = |i: i32| Sphere {
-            name: None,
-            center: [0.0, 0.0, 10.0 * f64::from(i)],
-            radius: 1.0,
-            material: "grey".to_owned(),
-        };
+        let camera = Camera::new([0.0, 0.0, 310.0], [0.0; 3], [0.0, 1.0, 0.0], [-1.0, 1.0, -1.0, 1.0], -5.0);
         World::new(&Scene {
-            snell: 1,
-            schema: None,
-            ambient: Rgb::gray(0.2),
-            eta_outside: 1.0,
-            background: Rgb::gray(0.0),
-            render: Render {
-                integrator: Integrator::Lecture,
-                size: [1, 1],
-                max_depth: 0,
-                min_throughput: crate::scene::MIN_THROUGHPUT,
-                bands: crate::scene::BANDS,
-                shadows: Shadows::Off,
-                transfer: Transfer::Linear,
-                rounding: Rounding::Round,
-            },
-            camera: Camera {
-                eye: [0.0, 0.0, 310.0],
-                look_at: [0.0; 3],
-                up: [0.0, 1.0, 0.0],
-                bounds: [-1.0, 1.0, -1.0, 1.0],
-                near: -5.0,
-                far: None,
-            },
-            lights: vec![],
             materials: [("grey".to_owned(), Material::default())].into(),
-            spheres: (0..30).map(sphere).collect(),
-            meshes: vec![],
+            spheres: (0..30).map(|i| Sphere::new([0.0, 0.0, 10.0 * f64::from(i)], 1.0, "grey")).collect(),
+            ..Scene::new(Render::new(Integrator::Lecture, [1, 1]), camera)
         })
         .unwrap()
     }

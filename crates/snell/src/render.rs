@@ -4,7 +4,7 @@ use crate::film::{Crop, Film, FilmTooLarge, Rgb};
 pub use crate::lanes::LaneWidth;
 use crate::lanes::{Kernel, Lanes, dispatch};
 use crate::threads;
-use crate::trace::{RayTree, Recorder, Statistics, Tracer};
+use crate::trace::{PixelTrace, Recorder, Statistics, Tracer};
 use crate::world::World;
 use std::fmt;
 use std::sync::Mutex;
@@ -127,15 +127,14 @@ pub fn render_into(film: &mut Film, world: &World, options: &Options<'_>) -> Res
     Ok(statistics)
 }
 
-/// Traces one pixel, column and row from the top left, and writes down every ray. The sum of the tree is the film's value,
+/// Traces one pixel, column and row from the top left, and writes down every ray. The sum of the trees is the film's value,
 /// bit for bit. `None` where the picture has no such pixel.
-pub fn trace_pixel(world: &World, x: u32, y: u32) -> Option<(Rgb, RayTree)> {
+pub fn trace_pixel(world: &World, x: u32, y: u32) -> Option<PixelTrace> {
     let [width, height] = world.camera.size;
     let mut tracer = Tracer::<f64, _>::new(world, None, Recorder::default());
     let pixel = (x < width && y < height).then_some(Crop { x, y, width: 1, height: 1 })?;
     let radiance = tracer.trace(&pixel)?.first().copied()?;
-    let lost = tracer.lost.first().copied().unwrap_or_default();
-    Some((radiance, RayTree { lost, ..tracer.observer.tree }))
+    Some(PixelTrace { radiance, samples: tracer.observer.samples })
 }
 
 /// What one thread does.

@@ -28,7 +28,7 @@ pub fn stage(integrator: Integrator) -> Scene {
 }
 
 pub fn sphere(center: [f64; 3], radius: f64, material: &str) -> Sphere {
-    Sphere { name: None, center, radius, material: material.to_owned() }
+    Sphere::new(center, radius, material)
 }
 
 /// Triangles that share no vertices.

@@ -2,8 +2,9 @@
 
 use crate::build::{Numbers, sphere, stage};
 use snell::film::Rgb;
-use snell::geometry::{TriangleMesh, Vec3};
-use snell::scene::{Integrator, Material, Mesh, Scene, Shadows, Transform};
+use snell::geometry::{TriangleMesh, make};
+use snell::scene::{Cuboid, Integrator, Lathe, Light, Material, Mesh, Plane, Scene, Shadows, Sky, Texture, Transform};
+use snell::texture::Image;
 use std::sync::Arc;
 
 /// The stage with real optics, three glasses, and something to see through them.
@@ -91,13 +92,95 @@ pub fn blocks() -> Scene {
     scene
 }
 
-/// A box of twelve triangles that look outward.
-pub fn cuboid(min: [f64; 3], max: [f64; 3]) -> TriangleMesh {
-    let corner = |i: u32| {
-        let pick = |axis: usize| if i >> axis & 1 == 0 { min[axis] } else { max[axis] };
-        Vec3::new(pick(0), pick(1), pick(2))
+/// Thin panes, interfaces between media, planes, boxes and turned shapes with patterns, under a spot light and a gradient, with
+/// several samples for each pixel.
+pub fn windows() -> Scene {
+    let mut scene = stage_of_glass();
+    scene.background = Rgb::gray(0.0);
+    scene.sky = Some(Sky {
+        horizon: Some(Rgb::new(0.5, 0.4, 0.3)),
+        zenith: Some(Rgb::new(0.1, 0.2, 0.5)),
+        nadir: None,
+        image: None,
+        brightness: 1.0,
+        rotate: 0.0,
+        pixels: None,
+    });
+    (scene.render.spp, scene.render.seed) = (3, 5);
+    let pane = Material { ko: Rgb::gray(0.0), eta: 1.5, thickness: Some(2.0), ..Material::default() };
+    let film =
+        Material { thickness: Some(0.0), sigma_a: Some(Rgb::gray(0.1)), dyed: true, ..scene.materials["milk"].clone() };
+    scene.materials.extend([("pane".to_owned(), pane), ("film".to_owned(), film)]);
+    let texels = (0..12).map(|i| [0.1 * i as f32, 0.5, 1.0 - 0.08 * i as f32]).collect();
+    let image = Arc::new(Image::new(4, 3, texels).unwrap());
+    let texture = |checker, pixels, repeat| Texture { checker, image: None, repeat, linear: false, pixels };
+    scene.textures.insert("board".to_owned(), texture(Some([Rgb::gray(0.9), Rgb::gray(0.2)]), None, [7.0, 5.0]));
+    scene.textures.insert("map".to_owned(), texture(None, Some(image), [2.0, 1.0]));
+    for (name, texture) in [("board", "board"), ("map", "map")] {
+        let texture = Some(texture.to_owned());
+        let bright = Rgb::gray(1.0);
+        scene.materials.insert(name.to_owned(), Material { texture, ka: bright, kd: bright, ..Material::default() });
+    }
+    let mut lamp = Light::at([50.0, 90.0, 80.0], Rgb::gray(0.8));
+    (lamp.target, lamp.cone, lamp.edge) = (Some([50.0, 45.0, 50.0]), Some(30.0), Some(12.0));
+    scene.lights.push(lamp);
+    let turned =
+        |degrees: f64, to: [f64; 3]| vec![Transform::Rotate { axis: [0.3, 1.0, 0.2], degrees }, Transform::Move(to)];
+    let plane = |size: [f64; 2], material: &str, transform: Vec<Transform>| Plane {
+        name: None,
+        center: [0.0; 3],
+        normal: [0.0, 0.0, 1.0],
+        size,
+        material: material.to_owned(),
+        inside: None,
+        outside: None,
+        transform,
+        instances: vec![],
     };
-    let sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-    let faces = sides.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
-    TriangleMesh { vertices: (0..8).map(corner).collect(), faces, ..TriangleMesh::default() }
+    scene.planes.push(plane([60.0, 40.0], "board", turned(5.0, [50.0, 45.0, 20.0])));
+    scene.planes.push(plane([14.0, 20.0], "pane", turned(50.0, [42.0, 45.0, 70.0])));
+    let mut blinds = plane([4.0, 16.0], "film", turned(-30.0, [0.0; 3]));
+    blinds.instances = [54.0, 57.0, 60.0].map(|x| vec![Transform::Move([x, 45.0, 68.0])]).into();
+    scene.planes.push(blinds);
+    // A block of water that ends at a block of flint: three interfaces.
+    let side = |low: f64, high: f64, inside: &str, outside: Option<&str>| Lathe {
+        name: None,
+        profile: vec![[4.0, low], [4.0, high]],
+        segments: 5,
+        smooth_angle: 0.0,
+        material: "crown".to_owned(),
+        inside: Some(inside.to_owned()),
+        outside: outside.map(str::to_owned),
+        transform: turned(20.0, [56.0, 40.0, 50.0]),
+        instances: vec![],
+    };
+    let disc = |profile: [[f64; 2]; 2], inside: &str, outside: Option<&str>| Lathe {
+        profile: profile.to_vec(),
+        ..side(0.0, 0.0, inside, outside)
+    };
+    scene.lathes = vec![
+        side(0.0, 6.0, "flint", None),
+        side(6.0, 11.0, "water", None),
+        disc([[0.0, 0.0], [4.0, 0.0]], "flint", None),
+        disc([[4.0, 6.0], [0.0, 6.0]], "flint", Some("water")),
+        disc([[4.0, 11.0], [0.0, 11.0]], "water", None),
+    ];
+    scene.boxes.push(Cuboid {
+        name: None,
+        min: [-3.0; 3],
+        max: [3.0, 5.0, 3.0],
+        material: "map".to_owned(),
+        transform: turned(35.0, [47.0, 42.0, 45.0]),
+        instances: vec![],
+    });
+    let mut globe = sphere([0.0, 1.0, 0.0], 2.0, "map");
+    globe.transform = vec![Transform::Scale([2.5; 3])];
+    globe.instances = vec![turned(70.0, [40.0, 56.0, 55.0]), turned(-20.0, [52.0, 56.0, 60.0])];
+    scene.spheres.push(globe);
+    scene
+}
+
+/// A box of twelve triangles that look outward, without texture coordinates.
+pub fn cuboid(min: [f64; 3], max: [f64; 3]) -> TriangleMesh {
+    TriangleMesh { uvs: vec![], face_uvs: vec![], ..make::cuboid(min.into(), max.into()) }
 }

@@ -36,7 +36,7 @@ fn spheres() -> Scene {
 /// With lights at infinity, one of them along an axis, and a sphere of glass.
 fn triangles_under_the_sun() -> Scene {
     let (mut scene, mut numbers) = (stage(Course2018), Numbers(13));
-    let sun = |direction| Light { name: None, position: None, direction: Some(direction), color: Rgb::gray(0.5) };
+    let sun = |direction| Light::from_direction(direction, Rgb::gray(0.5));
     scene.lights = vec![sun([1.0, 2.0, 3.0]), sun([0.0, 1.0, 0.0])];
     for color in MATERIALS {
         let corners = (0..600).flat_map(|i| {
@@ -54,7 +54,7 @@ pub fn tiny_and_huge() -> Scene {
     let (mut scene, mut numbers) = (stage(Lecture), Numbers(17));
     let camera = &scene.camera;
     let (eye, [right, up, back]) = (Vec3::from(camera.eye), camera.axes().unwrap());
-    let [left, _, _, top] = camera.bounds;
+    let [left, _, _, top] = camera.bounds.unwrap();
     let step = 4.0 / 23.0; // the bounds are [-2, 2, -2, 2], and the pixels of the edges lie on them
     for pixel in 0..576u32 {
         let (x, y) = (f64::from(pixel % 24), f64::from(pixel / 24));

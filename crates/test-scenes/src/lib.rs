@@ -46,7 +46,12 @@ pub fn all() -> Vec<Named> {
     scenes.extend([0.0, 4096.0, -3e8].map(|offset| (format!("far away by {offset}"), far_away(offset, 0, true))));
     scenes.extend([0.0, 1e6].map(|offset| (format!("instances away by {offset}"), instances(offset, true))));
     scenes.push(("hall of mirrors".to_owned(), hall_of_mirrors(5)));
-    let glass = [("bubbles", glass::bubbles()), ("marbles", glass::marbles()), ("blocks", glass::blocks())];
+    let glass = [
+        ("bubbles", glass::bubbles()),
+        ("marbles", glass::marbles()),
+        ("blocks", glass::blocks()),
+        ("windows", glass::windows()),
+    ];
     scenes.extend(glass.map(|(name, scene)| (format!("{name} of glass"), scene)));
     scenes.extend(["gallery/ball", "gallery/bubbles"].map(|name| (name.to_owned(), lecture(name, 24))));
     scenes

@@ -4,10 +4,7 @@ use super::dialect::{Dialect, recognise};
 use crate::report::{Report, Source, nearest};
 use crate::words::{Line, lines};
 use snell::film::Rgb;
-use snell::scene::{
-    Camera, Light, Material, Mesh, Render, SCHEMA_VERSION, Scene, Shadows, Sphere, Step, Transfer, Transform,
-    WarningCode,
-};
+use snell::scene::{Camera, Light, Material, Mesh, Render, Scene, Sphere, Step, Transfer, Transform, WarningCode};
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
@@ -247,12 +244,12 @@ impl Reader {
         let expected = "light x y z w r g b, with w 1 for a point and 0 for a light at infinity";
         let [x, y, z, w, r, g, b] = line.exactly(expected)?;
         self.place("light", self.values.lights.len(), line);
-        let at = Some([x, y, z]);
+        let at = [x, y, z];
         let color = Rgb::new(r, g, b);
         self.values.lights.push(if w == 1.0 {
-            Light { name: None, position: at, direction: None, color }
+            Light::at(at, color)
         } else if w == 0.0 {
-            Light { name: None, position: None, direction: at, color }
+            Light::from_direction(at, color)
         } else {
             let word = &line.rest[3];
             return Err(Report::error(format!("w must be 0 or 1, read `{}`", word.text))
@@ -301,12 +298,7 @@ impl Reader {
             self.places.push((vec!["material".into(), sphere_material(index).as_str().into()], line.range()));
             self.values.materials.push(material);
         }
-        self.values.spheres.push(Sphere {
-            name: None,
-            center: [v[0], v[1], v[2]],
-            radius: v[3],
-            material: sphere_material(index),
-        });
+        self.values.spheres.push(Sphere::new([v[0], v[1], v[2]], v[3], &sphere_material(index)));
         Ok(())
     }
 
@@ -389,34 +381,26 @@ impl Reader {
         };
         let eye = if dialect == Dialect::Course2020 { "camera" } else { "eye" };
         let near = if dialect == Dialect::Course2020 { "camera" } else { "d" };
+        let render = Render {
+            max_depth: values.depth,
+            transfer: Transfer::Linear,
+            rounding: dialect.rounding(),
+            ..Render::new(dialect.integrator(), values.size.ok_or_else(|| missing("res"))?)
+        };
+        let camera = Camera::new(
+            values.eye.ok_or_else(|| missing(eye))?,
+            values.look.ok_or_else(|| missing("look"))?,
+            values.up.ok_or_else(|| missing("up"))?,
+            values.bounds.ok_or_else(|| missing("bounds"))?,
+            values.near.ok_or_else(|| missing(near))?,
+        );
         let scene = Scene {
-            snell: SCHEMA_VERSION,
-            schema: None,
             ambient: values.ambient,
             eta_outside: values.eta_outside.unwrap_or(1.0),
-            background: Rgb::gray(0.0),
-            render: Render {
-                integrator: dialect.integrator(),
-                size: values.size.ok_or_else(|| missing("res"))?,
-                max_depth: values.depth,
-                min_throughput: snell::scene::MIN_THROUGHPUT,
-                bands: snell::scene::BANDS,
-                shadows: Shadows::Opaque,
-                transfer: Transfer::Linear,
-                rounding: dialect.rounding(),
-            },
-            camera: Camera {
-                eye: values.eye.ok_or_else(|| missing(eye))?,
-                look_at: values.look.ok_or_else(|| missing("look"))?,
-                up: values.up.ok_or_else(|| missing("up"))?,
-                bounds: values.bounds.ok_or_else(|| missing("bounds"))?,
-                near: values.near.ok_or_else(|| missing(near))?,
-                far: None,
-            },
             lights: values.lights,
             materials: values.materials.into_iter().enumerate().map(|(i, m)| (sphere_material(i), m)).collect(),
             spheres: values.spheres,
-            meshes: Vec::new(),
+            ..Scene::new(render, camera)
         };
         Ok(Driver { dialect, scene, models, warnings: Vec::new(), places })
     }

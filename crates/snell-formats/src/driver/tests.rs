@@ -23,7 +23,7 @@ fn the_trap_of_the_bounds() {
     for (text, dialect) in [(EARLY, Dialect::Course2018), (LATE, Dialect::Course2019), (Y2020, Dialect::Course2020)] {
         let driver = read(text);
         assert_eq!(driver.dialect, dialect);
-        assert_eq!(driver.scene.camera.bounds, [-2.0, 2.0, -1.0, 1.0], "{dialect:?}");
+        assert_eq!(driver.scene.camera.bounds, Some([-2.0, 2.0, -1.0, 1.0]), "{dialect:?}");
         assert_eq!(driver.scene.camera.near, -5.0);
         assert_eq!(driver.scene.camera.eye, [0.0, 0.0, 10.0]);
         assert_eq!(driver.scene.render.size, [8, 4]);

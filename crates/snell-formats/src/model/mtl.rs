@@ -101,7 +101,6 @@ pub fn parse_mtl(source: &Source) -> Result<(Vec<MtlMaterial>, Vec<Report>), Rep
             "Ke" | "Ni" | "d" | "Tr" | "Tf" | "Pr" | "Pm" | "Ps" | "Pc" | "Pcr" | "aniso" | "anisor" | "sharpness" => {}
             "map_Kd" | "map_kd" => {
                 let Map { file, options } = Map::of(&line);
-                warnings.push(not_drawn(&line, file));
                 if let Some(options) = options {
                     let message = format!("the options `{options}` of the texture `{file}` are ignored");
                     warnings.push(Report::warning(WarningCode::TextureIgnored, message).at(source, line.range()));
@@ -207,7 +206,7 @@ mod tests {
 
     #[test]
     fn textures_and_unknown_words_are_warned_of() {
-        let (_, warnings) = parse_mtl(&Source::new("m.mtl", "newmtl a\nmap_Kd no.png\nKq 3\n")).unwrap();
+        let (_, warnings) = parse_mtl(&Source::new("m.mtl", "newmtl a\nmap_Ks no.png\nKq 3\n")).unwrap();
         assert!(warnings[0].message.contains("`no.png`") && warnings[0].message.contains("missing"));
         assert_eq!(warnings[1].warning, Some("W101 unknown-keyword"));
         assert!(parse_mtl(&Source::new("m.mtl", "Kd 1 1 1\n")).unwrap_err().message.contains("newmtl"));

@@ -23,10 +23,7 @@ use crate::words::{Word, number, words};
 use shapes::Shapes;
 use snell::film::Rgb;
 use snell::geometry::Vec3;
-use snell::scene::{
-    Camera, Integrator, Light, Material, Render, Rounding, SCHEMA_VERSION, Scene, Shadows, Sphere, Step, Transfer,
-    WarningCode,
-};
+use snell::scene::{Camera, Integrator, Light, Material, Render, Scene, Sphere, Step, WarningCode};
 use std::iter::Peekable;
 use std::ops::Range;
 
@@ -150,7 +147,7 @@ impl<'a, W: Iterator<Item = Word<'a>>> Reader<'a, W> {
                     self.warn(keyword, "a sphere that is seen from inside only is drawn from both sides");
                 }
                 let material = self.material(keyword)?;
-                self.spheres.push(Sphere { name: None, center: [x, y, z], radius: radius.abs(), material });
+                self.spheres.push(Sphere::new([x, y, z], radius.abs(), &material));
                 Some(vec![Step::from("sphere"), Step::from(self.spheres.len() - 1)])
             }
             "p" | "pp" => {
@@ -231,7 +228,7 @@ impl<'a, W: Iterator<Item = Word<'a>>> Reader<'a, W> {
             1.0
         };
         let half = near * libm::tan((angle / 2.0).to_radians());
-        let camera = Camera { eye, look_at, up, bounds: [-half, half, -half, half], near: -near, far: None };
+        let camera = Camera::new(eye, look_at, up, [-half, half, -half, half], -near);
         self.view = Some(View { camera, size });
         Ok(())
     }
@@ -315,35 +312,17 @@ impl<'a, W: Iterator<Item = Word<'a>>> Reader<'a, W> {
         };
         // Intensities add up where all lights shine; squares of them, as Haines chose, are a middle way.
         let share = 1.0 / (self.lights.len() as f64).sqrt();
-        let light = |(position, color): ([f64; 3], Option<Rgb>)| Light {
-            name: None,
-            position: Some(position),
-            direction: None,
-            color: color.unwrap_or(Rgb::gray(share)),
-        };
+        let light = |(position, color): ([f64; 3], Option<Rgb>)| Light::at(position, color.unwrap_or(Rgb::gray(share)));
         let mut places = self.places;
         let (materials, meshes) = self.shapes.finish(&mut places);
+        let render = Render { max_depth: MAX_DEPTH, ..Render::new(INTEGRATOR, size) };
         let scene = Scene {
-            snell: SCHEMA_VERSION,
-            schema: None,
-            ambient: Rgb::gray(0.0),
-            eta_outside: 1.0,
             background: self.background,
-            render: Render {
-                integrator: INTEGRATOR,
-                size,
-                max_depth: MAX_DEPTH,
-                min_throughput: snell::scene::MIN_THROUGHPUT,
-                bands: snell::scene::BANDS,
-                shadows: Shadows::Opaque,
-                transfer: Transfer::default(),
-                rounding: Rounding::default(),
-            },
-            camera,
             lights: self.lights.into_iter().map(light).collect(),
             materials,
             spheres: self.spheres,
             meshes,
+            ..Scene::new(render, camera)
         };
         Ok(Nff { scene, warnings: self.warnings, places })
     }

@@ -178,7 +178,7 @@ fn the_scene_in_the_documentation_is_one() {
     let page = include_str!("../../../../docs/scenes.md");
     let text = page.split("```toml").nth(1).and_then(|t| t.split("```").next()).unwrap();
     let scene = parse(&source(text), Syntax::Toml).unwrap();
-    assert_eq!((scene.spheres.len(), scene.meshes.len(), scene.lights.len()), (1, 2, 2));
+    assert_eq!((scene.spheres.len(), scene.meshes.len(), scene.lights.len()), (1, 2, 3));
     assert_eq!(snell::scene::validate(&scene).unwrap(), []);
 }
 

@@ -2,6 +2,7 @@
 
 pub mod bounds;
 pub mod bvh;
+pub mod make;
 pub mod mesh;
 pub mod ray;
 pub mod solid;

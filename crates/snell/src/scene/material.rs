@@ -7,6 +7,7 @@ use crate::optics::dispersion::{Dispersion, Formula, VISIBLE_NM};
 use crate::optics::glass::{self, UnknownGlass};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 
 /// What a surface does with light. What is left out is 0, but `ko` 1 (opaque), `spow` 16 and `eta` 1.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -36,6 +37,16 @@ pub struct Material {
     /// `whitted`: Cauchy's A, B and C instead of `eta`: the index at λ µm is A + B/λ² + C/λ⁴.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cauchy: Option<[f64; 3]>,
+    /// `whitted`: Sellmeier's pairs B, C instead of `eta`: the index squared at λ µm is 1 + Σ Bλ²/(λ² − C), C in µm².
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sellmeier: Option<Vec<[f64; 2]>>,
+    /// Name of a texture, by which `ka` and `kd` are multiplied.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub texture: Option<String>,
+    /// `whitted`: each face is a whole pane of this thickness in scene units, with both of its sides, so that the
+    /// mesh need not be closed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub thickness: Option<f64>,
     /// `whitted`: light that the surface sends out by itself.
     #[serde(skip_serializing_if = "is_default")]
     pub emission: Rgb,
@@ -74,6 +85,9 @@ impl Default for Material {
             glass: None,
             abbe: None,
             cauchy: None,
+            sellmeier: None,
+            texture: None,
+            thickness: None,
             emission: none,
             attenuation_color: None,
             attenuation_distance: None,
@@ -95,11 +109,13 @@ impl Material {
     /// # Errors
     /// An unknown glass, with the names that are most like it.
     pub fn dispersion(&self) -> Result<Dispersion, UnknownGlass> {
-        Ok(match (&self.glass, self.cauchy, self.abbe) {
+        let visible = |formula| Dispersion { formula, range_nm: VISIBLE_NM };
+        Ok(match (&self.glass, &self.sellmeier, self.cauchy, self.abbe) {
             (Some(name), ..) => glass::find(name)?.dispersion.clone(),
-            (None, Some(cauchy), _) => Dispersion { formula: Formula::Cauchy(cauchy), range_nm: VISIBLE_NM },
-            (None, None, Some(abbe)) => Dispersion::abbe(self.eta, abbe),
-            (None, None, None) => Dispersion::constant(self.eta),
+            (None, Some(pairs), ..) => visible(Formula::SellmeierSquared(0.0, Cow::Owned(pairs.clone()))),
+            (None, None, Some(cauchy), _) => visible(Formula::Cauchy(cauchy)),
+            (None, None, None, Some(abbe)) => Dispersion::abbe(self.eta, abbe),
+            (None, None, None, None) => Dispersion::constant(self.eta),
         })
     }
 

@@ -5,19 +5,28 @@
 
 mod camera;
 mod light;
+mod made;
 mod material;
 mod render;
 mod shape;
+mod sky;
 mod table;
+mod texture;
+mod transform;
 mod validate;
 mod warning;
 
 pub use camera::Camera;
 pub use light::Light;
+pub use made::{Cuboid, Lathe, Plane};
 pub use material::Material;
 pub use render::{BANDS, Integrator, MIN_THROUGHPUT, Render, Shadows};
-pub use shape::{Mesh, OpenMesh, Sphere, Transform};
-pub use validate::{LARGEST_NUMBER, MAX_BANDS, MAX_DEPTH, Problem, Step, validate};
+pub use shape::{Mesh, OpenMesh, Sphere};
+pub use sky::Sky;
+pub use texture::Texture;
+pub use transform::Transform;
+pub(crate) use transform::whole_map;
+pub use validate::{LARGEST_NUMBER, MAX_BANDS, MAX_DEPTH, MAX_SPP, Problem, Step, validate};
 pub use warning::{Warning, WarningCode};
 
 pub use crate::film::transfer::{Rounding, Transfer};
@@ -45,6 +54,9 @@ pub struct Scene {
     /// `whitted`: light that comes from where nothing is hit.
     #[serde(default, skip_serializing_if = "is_black")]
     pub background: Rgb,
+    /// `whitted`: light that depends on the direction, instead of `background`.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "table::maybe")]
+    pub sky: Option<Sky>,
     /// Index of refraction of the space between the objects.
     #[serde(default = "one")]
     pub eta_outside: f64,
@@ -65,12 +77,53 @@ pub struct Scene {
         deserialize_with = "table::by_name"
     )]
     pub materials: IndexMap<String, Material>,
+    /// Patterns on surfaces, by name.
+    #[serde(
+        default,
+        rename = "texture",
+        skip_serializing_if = "IndexMap::is_empty",
+        deserialize_with = "table::by_name"
+    )]
+    pub textures: IndexMap<String, Texture>,
     /// Spheres.
     #[serde(default, rename = "sphere", skip_serializing_if = "Vec::is_empty", deserialize_with = "table::many")]
     pub spheres: Vec<Sphere>,
     /// Triangle meshes.
     #[serde(default, rename = "mesh", skip_serializing_if = "Vec::is_empty", deserialize_with = "table::many")]
     pub meshes: Vec<Mesh>,
+    /// Rectangles.
+    #[serde(default, rename = "plane", skip_serializing_if = "Vec::is_empty", deserialize_with = "table::many")]
+    pub planes: Vec<Plane>,
+    /// Boxes.
+    #[serde(default, rename = "box", skip_serializing_if = "Vec::is_empty", deserialize_with = "table::many")]
+    pub boxes: Vec<Cuboid>,
+    /// What turns around an axis.
+    #[serde(default, rename = "lathe", skip_serializing_if = "Vec::is_empty", deserialize_with = "table::many")]
+    pub lathes: Vec<Lathe>,
+}
+
+impl Scene {
+    /// A scene of which only this is given: nothing in it, and no light.
+    pub fn new(render: Render, camera: Camera) -> Self {
+        Self {
+            snell: SCHEMA_VERSION,
+            schema: None,
+            ambient: Rgb::default(),
+            background: Rgb::default(),
+            sky: None,
+            eta_outside: 1.0,
+            render,
+            camera,
+            lights: Vec::new(),
+            materials: IndexMap::new(),
+            textures: IndexMap::new(),
+            spheres: Vec::new(),
+            meshes: Vec::new(),
+            planes: Vec::new(),
+            boxes: Vec::new(),
+            lathes: Vec::new(),
+        }
+    }
 }
 
 fn is_black(color: &Rgb) -> bool {

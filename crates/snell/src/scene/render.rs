@@ -12,6 +12,12 @@ pub struct Render {
     pub integrator: Integrator,
     /// Width and height in pixels.
     pub size: [u32; 2],
+    /// Samples per pixel: 1 looks through the point of the grid, more are spread over half a step around it.
+    #[serde(default = "default_spp", skip_serializing_if = "is_default_spp")]
+    pub spp: u32,
+    /// Another number spreads the samples otherwise.
+    #[serde(default, skip_serializing_if = "is_default_seed")]
+    pub seed: u32,
     /// How many bounces may follow the camera ray.
     #[serde(default = "default_depth")]
     pub max_depth: u32,
@@ -30,6 +36,24 @@ pub struct Render {
     /// What happens to the fraction in 8 and 16 bit.
     #[serde(default)]
     pub rounding: Rounding,
+}
+
+impl Render {
+    /// Everything but the model of light and the size of the picture as it is where a file leaves it out.
+    pub fn new(integrator: Integrator, size: [u32; 2]) -> Self {
+        Self {
+            integrator,
+            size,
+            spp: 1,
+            seed: 0,
+            max_depth: default_depth(),
+            min_throughput: MIN_THROUGHPUT,
+            bands: BANDS,
+            shadows: Shadows::default(),
+            transfer: Transfer::default(),
+            rounding: Rounding::default(),
+        }
+    }
 }
 
 /// The model of light.
@@ -57,6 +81,8 @@ pub enum Shadows {
     Opaque,
     /// `whitted`: light goes straight through transparent things, and what they reflect and absorb is lost.
     Tinted,
+    /// Not built yet, and refused: light as glass focuses it.
+    Caustic,
 }
 
 /// The default of [`Render::min_throughput`].
@@ -64,6 +90,20 @@ pub const MIN_THROUGHPUT: f64 = 1.0 / 4096.0;
 
 /// The default of [`Render::bands`].
 pub const BANDS: u32 = 16;
+
+fn default_spp() -> u32 {
+    1
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "the signature that serde asks for")]
+fn is_default_spp(value: &u32) -> bool {
+    *value == 1
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "the signature that serde asks for")]
+fn is_default_seed(value: &u32) -> bool {
+    *value == 0
+}
 
 fn default_bands() -> u32 {
     BANDS

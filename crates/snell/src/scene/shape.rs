@@ -1,6 +1,7 @@
-//! Shapes and where they stand.
+//! Shapes that files describe: spheres, and meshes from model files or written out.
 
-use crate::geometry::{Affine, TriangleMesh, Vec3};
+use super::Transform;
+use crate::geometry::TriangleMesh;
 use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -19,6 +20,20 @@ pub struct Sphere {
     pub radius: f64,
     /// Name of its material.
     pub material: String,
+    /// Steps that put it in its place, one after the other; it must stay a sphere.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub transform: Vec<Transform>,
+    /// Places where it stands, each a list of steps after those of `transform`; empty for once.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub instances: Vec<Vec<Transform>>,
+}
+
+impl Sphere {
+    /// A sphere without a name, in one place.
+    pub fn new(center: [f64; 3], radius: f64, material: &str) -> Self {
+        let material = material.to_owned();
+        Self { name: None, center, radius, material, transform: Vec::new(), instances: Vec::new() }
+    }
 }
 
 /// A triangle mesh, from a file or written out.
@@ -49,13 +64,18 @@ pub struct Mesh {
     /// `whitted`: what to do with a transparent mesh that is not closed; left out: it is refused.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub open: Option<OpenMesh>,
+    /// `whitted`: the material of what is behind its faces, which then are interfaces, and need not be closed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub inside: Option<String>,
+    /// `whitted`: with `inside`, the material of what its faces look at; left out: the space between the objects.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub outside: Option<String>,
     /// Steps that put the model in its place, one after the other.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub transform: Vec<Transform>,
     /// Places where the mesh stands, each a list of steps after those of `transform`; empty for once, where `transform` puts
-    /// it. However many places, its triangles are held once. Only for programs: not in files.
-    #[serde(skip)]
-    #[schemars(skip)]
+    /// it. However many places, its triangles are held once.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub instances: Vec<Vec<Transform>>,
     /// The triangles themselves, once the file has been read; `None` before.
     #[serde(skip)]
@@ -74,35 +94,6 @@ pub enum OpenMesh {
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "the signature that serde asks for")]
-fn is_zero(value: &f64) -> bool {
+pub(super) fn is_zero(value: &f64) -> bool {
     *value == 0.0
-}
-
-/// One step of a placement.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "lowercase", deny_unknown_fields)]
-pub enum Transform {
-    /// Turns about an axis through the origin, right-handed.
-    Rotate {
-        /// Direction of the axis, of any length but 0.
-        axis: [f64; 3],
-        /// Angle in degrees.
-        degrees: f64,
-    },
-    /// Scales along the three axes.
-    Scale([f64; 3]),
-    /// Moves.
-    Move([f64; 3]),
-}
-
-impl Transform {
-    /// The step as a map; `None` for a rotation about no axis by another angle than 0.
-    pub fn map(&self) -> Option<Affine> {
-        match *self {
-            Self::Rotate { axis: [0.0, 0.0, 0.0], degrees: 0.0 } => Some(Affine::IDENTITY),
-            Self::Rotate { axis, degrees } => Affine::rotation(axis.into(), degrees),
-            Self::Scale(factors) => Some(Affine::scaling(factors.into())),
-            Self::Move(offset) => Some(Affine::translation(Vec3::from(offset))),
-        }
-    }
 }

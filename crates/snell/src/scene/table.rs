@@ -65,3 +65,8 @@ where
     }
     deserializer.deserialize_map(Unique(PhantomData))
 }
+
+/// One table that may be left out.
+pub(super) fn maybe<'de, D: Deserializer<'de>, T: Deserialize<'de>>(deserializer: D) -> Result<Option<T>, D::Error> {
+    one(deserializer).map(Some)
+}

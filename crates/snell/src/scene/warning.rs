@@ -50,6 +50,8 @@ codes! {
     NotInThisModel = "W006" "not-in-this-model",
     /// A ray left a solid that it had not entered.
     StrayExit = "W007" "stray-exit",
+    /// Solids of the same priority and different media that cross each other.
+    Overlap = "W008" "overlap",
     /// A line that starts with an unknown word.
     UnknownKeyword = "W101" "unknown-keyword",
     /// The same setting given twice; the last one counts.

@@ -3,6 +3,7 @@
 use super::lecture::T_MIN;
 use super::media::{Media, OUTSIDE, WHITE};
 use super::queue::{Generation, Load, Weight};
+use super::sampler;
 use crate::film::{Crop, Rgb};
 use crate::geometry::{Sphere, Vec3, sphere};
 use crate::lanes::{Columns, Lanes};
@@ -19,6 +20,8 @@ pub(crate) struct CameraRays<'a> {
     media: Columns<1>,
     /// No hit nearer than this counts.
     t_min: f64,
+    /// The seed by which samples are spread; `None` where each is its pixel's point of the grid.
+    spread: Option<u32>,
     cone: Cone,
 }
 
@@ -38,12 +41,13 @@ impl<'a> CameraRays<'a> {
     pub fn new(world: &'a World) -> Self {
         let t_min = if world.render.integrator == Integrator::Whitted { 0.0 } else { T_MIN };
         let (places, media) = (Columns::default(), Columns::default());
-        Self { camera: &world.camera, places, media, t_min, cone: Cone::default() }
+        let spread = (world.render.spp > 1).then_some(world.render.seed);
+        Self { camera: &world.camera, places, media, t_min, spread, cone: Cone::default() }
     }
 
-    /// Takes the pixels of another tile.
-    pub fn aim(&mut self, tile: &Crop, media: &mut Media<'_>) {
-        self.place(tile);
+    /// Takes a sample of each pixel of a tile.
+    pub fn aim(&mut self, tile: &Crop, sample: u32, media: &mut Media<'_>) {
+        self.place(tile, sample);
         self.media.clear();
         self.media.resize(self.places.len());
         let [sets] = self.media.columns_mut();
@@ -58,15 +62,21 @@ impl<'a> CameraRays<'a> {
         }
     }
 
-    fn place(&mut self, tile: &Crop) {
+    fn place(&mut self, tile: &Crop, sample: u32) {
         self.places.clear();
         self.places.resize(tile.width as usize * tile.height as usize);
         let [across, up] = self.places.columns_mut();
         let rows = across.chunks_mut(tile.width as usize).zip(up.chunks_mut(tile.width as usize));
-        for (y, (across, up)) in rows.enumerate() {
-            up.fill(self.camera.up(tile.y + y as u32));
-            for (x, place) in across.iter_mut().enumerate() {
-                *place = self.camera.across(tile.x + x as u32);
+        for (y, (across, up)) in (tile.y..).zip(rows) {
+            up.fill(self.camera.up(y.into()));
+            for (x, place) in (tile.x..).zip(across.iter_mut()) {
+                *place = self.camera.across(x.into());
+            }
+            if let Some(seed) = self.spread {
+                for (x, (across, up)) in (tile.x..).zip(across.iter_mut().zip(up)) {
+                    let [right, down] = sampler::offset(seed, [x, y], sample);
+                    (*across, *up) = (self.camera.across(f64::from(x) + right), self.camera.up(f64::from(y) + down));
+                }
             }
         }
         self.cone = Cone::around(self.camera, tile);
@@ -76,8 +86,11 @@ impl<'a> CameraRays<'a> {
 impl Cone {
     /// A cone that holds the four corners of a tile holds all between them, as it is convex.
     fn around(camera: &CameraFrame, tile: &Crop) -> Self {
-        let [left, right] = [tile.x, tile.x + tile.width - 1].map(|x| camera.across(x));
-        let [top, bottom] = [tile.y, tile.y + tile.height - 1].map(|y| camera.up(y));
+        let ends = |start: u32, length: u32| {
+            [f64::from(start) - camera.spread(), f64::from(start + (length - 1)) + camera.spread()]
+        };
+        let [left, right] = ends(tile.x, tile.width).map(|x| camera.across(x));
+        let [top, bottom] = ends(tile.y, tile.height).map(|y| camera.up(y));
         let (middle, axis) = camera.rays::<f64>((left + right) * 0.5, (top + bottom) * 0.5);
         let corners = [(left, top), (right, top), (left, bottom), (right, bottom)];
         let cos =
@@ -148,14 +161,15 @@ impl Generation for CameraRays<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Camera;
+    use crate::scene::{Camera, Render};
     use proptest::prelude::*;
 
     /// The rays of a tile, of a camera without a world.
     fn through<'a>(camera: &'a CameraFrame, tile: &Crop) -> CameraRays<'a> {
+        let spread = (camera.spread() > 0.0).then_some(5);
         let (places, media, cone) = (Columns::default(), Columns::default(), Cone::default());
-        let mut rays = CameraRays { camera, places, media, t_min: 0.0, cone };
-        rays.place(tile);
+        let mut rays = CameraRays { camera, places, media, t_min: 0.0, spread, cone };
+        rays.place(tile, 3);
         rays
     }
 
@@ -169,11 +183,12 @@ mod tests {
             radius in prop_oneof![1e-6..1e-3f64, 0.1..9.0f64],
             corner in prop::array::uniform2(0..60u32),
             near in -3.0..-0.1f64,
+            spp in 1..3u32,
         ) {
             let moved = |p: [f64; 3]| p.map(|c| c + far);
             let bounds = [-1.0, 2.0, -2.0, 1.0];
-            let camera = Camera { eye: moved(eye), look_at: [far; 3], up: [0.1, 1.0, 0.2], bounds, near, far: None };
-            let frame = CameraFrame::new(&camera, [64, 64]);
+            let camera = Camera::new(moved(eye), [far; 3], [0.1, 1.0, 0.2], bounds, near);
+            let frame = CameraFrame::new(&camera, &Render { spp, ..Render::new(Integrator::Lecture, [64, 64]) });
             prop_assume!(frame.has_image_plane());
             let rays = through(&frame, &Crop { x: corner[0], y: corner[1], width: 4, height: 3 });
             let sphere = Sphere { center: moved(center).into(), radius };
@@ -187,15 +202,8 @@ mod tests {
 
     #[test]
     fn a_cone_leaves_something_out() {
-        let camera = Camera {
-            eye: [0.0, 0.0, 10.0],
-            look_at: [0.0; 3],
-            up: [0.0, 1.0, 0.0],
-            bounds: [-1.0, 1.0, -1.0, 1.0],
-            near: -1.0,
-            far: None,
-        };
-        let frame = CameraFrame::new(&camera, [64, 64]);
+        let camera = Camera::new([0.0, 0.0, 10.0], [0.0; 3], [0.0, 1.0, 0.0], [-1.0, 1.0, -1.0, 1.0], -1.0);
+        let frame = CameraFrame::new(&camera, &Render::new(Integrator::Lecture, [64, 64]));
         let rays = through(&frame, &Crop { x: 0, y: 0, width: 16, height: 16 });
         assert!(!rays.may_meet(&Sphere { center: Vec3::default(), radius: 2.0 }));
         assert!(rays.may_meet(&Sphere { center: Vec3::new(-8.0, 8.0, 0.0), radius: 0.1 }));

@@ -7,7 +7,7 @@ use super::lecture::{self, Blend};
 use super::media::Media;
 use super::queue::{Generation, RayKind, RayQueue};
 use super::shading::{self, ShadowRays};
-use super::statistics::{Statistics, StrayExits};
+use super::statistics::Statistics;
 use super::whitted;
 use crate::film::{Crop, Rgb};
 use crate::geometry::bvh::Packet;
@@ -27,12 +27,22 @@ const RAYS_PER_PIXEL: u32 = 1 << 18;
 /// Sees every generation when it is done, with its rays, hits and contributions.
 pub(crate) trait Observer {
     fn generation(&mut self, rays: &impl Generation, hits: &Hits);
+    /// A sample of each pixel is done; what each of them lost.
+    fn sample(&mut self, lost: &[Rgb]);
 }
 
 /// Looks at nothing: plain rendering.
 impl Observer for () {
     #[inline(always)]
     fn generation(&mut self, _rays: &impl Generation, _hits: &Hits) {}
+    #[inline(always)]
+    fn sample(&mut self, _lost: &[Rgb]) {}
+}
+
+/// The mean of so many samples, from their sum.
+pub(super) fn mean(sum: Rgb, spp: u32) -> Rgb {
+    let share = |sum: f64| sum / f64::from(spp);
+    Rgb::new(share(sum.r), share(sum.g), share(sum.b))
 }
 
 /// A worker: it owns the queues, which are used again for every tile.
@@ -58,11 +68,13 @@ pub(crate) struct Tracer<'a, L, O> {
     /// Queues that wait to be used again.
     spare: Vec<RayQueue>,
     tile: Crop,
-    /// Radiance and number of rays of each pixel of the tile, and the throughput it lost.
+    /// For a sample of each pixel of the tile: radiance, number of rays, and the throughput it lost.
     radiance: Vec<Rgb>,
     rays_of: Vec<u32>,
-    pub lost: Vec<Rgb>,
-    /// The same without signs, which colours of single wavelengths have, and as the mean of the three channels.
+    lost: Vec<Rgb>,
+    /// Of several samples the sum of their radiance.
+    sum: Vec<Rgb>,
+    /// What all samples lost without signs, which colours of single wavelengths have, as the mean of the three channels.
     lost_sizes: Vec<f64>,
     lanes: std::marker::PhantomData<L>,
 }
@@ -113,6 +125,7 @@ impl<'a, L: Lanes, O: Observer> Tracer<'a, L, O> {
             radiance: Vec::new(),
             rays_of: Vec::new(),
             lost: Vec::new(),
+            sum: Vec::new(),
             lost_sizes: Vec::new(),
             lanes: std::marker::PhantomData,
         }
@@ -122,9 +135,36 @@ impl<'a, L: Lanes, O: Observer> Tracer<'a, L, O> {
     #[inline(always)]
     pub fn trace(&mut self, tile: &Crop) -> Option<&[Rgb]> {
         let mut camera_rays = self.camera_rays.take().unwrap_or_else(|| CameraRays::new(self.world));
+        let (count, spp) = (tile.width as usize * tile.height as usize, self.world.render.spp);
         self.tile = *tile;
-        self.media.forget();
-        camera_rays.aim(tile, &mut self.media);
+        self.sum.clear();
+        self.lost_sizes.clear();
+        self.lost_sizes.resize(count, 0.0);
+        for sample in 0..spp {
+            self.media.forget();
+            camera_rays.aim(tile, sample, &mut self.media);
+            self.trace_sample(&camera_rays)?;
+            if spp > 1 {
+                self.sum.resize(count, Rgb::black());
+                for (sum, &radiance) in self.sum.iter_mut().zip(&self.radiance) {
+                    *sum = *sum + radiance;
+                }
+            }
+        }
+        self.camera_rays = Some(camera_rays);
+        self.count_lost_light();
+        if spp == 1 {
+            return Some(&self.radiance);
+        }
+        for sum in &mut self.sum {
+            *sum = mean(*sum, spp);
+        }
+        Some(&self.sum)
+    }
+
+    /// Traces one ray for each pixel, with all that follows from it.
+    #[inline(always)]
+    fn trace_sample(&mut self, camera_rays: &CameraRays<'_>) -> Option<()> {
         let count = camera_rays.len();
         self.radiance.clear();
         self.radiance.resize(count, Rgb::black());
@@ -132,11 +172,8 @@ impl<'a, L: Lanes, O: Observer> Tracer<'a, L, O> {
         self.rays_of.resize(count, 1);
         self.lost.clear();
         self.lost.resize(count, Rgb::black());
-        self.lost_sizes.clear();
-        self.lost_sizes.resize(count, 0.0);
 
-        let children = self.generation(0, &camera_rays);
-        self.camera_rays = Some(camera_rays);
+        let children = self.generation(0, camera_rays);
         self.enqueue(1, children);
         while let Some((depth, queue)) = self.waiting.pop() {
             if self.cancel.is_some_and(|c| c.load(Ordering::Relaxed)) {
@@ -150,8 +187,8 @@ impl<'a, L: Lanes, O: Observer> Tracer<'a, L, O> {
             self.spare.push(queue);
             self.enqueue(depth + 1, children);
         }
-        self.count_lost_light();
-        Some(&self.radiance)
+        self.observer.sample(&self.lost);
+        Some(())
     }
 
     fn empty_queue(&mut self) -> RayQueue {
@@ -197,17 +234,17 @@ impl<'a, L: Lanes, O: Observer> Tracer<'a, L, O> {
         if blend.is_some() {
             self.hits.find::<L>(self.world, rays, &mut self.packet);
         } else {
-            let mut stray = StrayExits::default();
+            let mut found = Statistics::default();
             L::call(FindInterfaces {
                 hits: &mut self.hits,
                 rays,
                 media: &mut self.media,
                 ways: &mut self.ways,
                 packet: &mut self.packet,
-                stray: &mut stray,
+                statistics: &mut found,
             });
-            stray.first_pixel = stray.first_pixel.map(|pixel| self.number_of(pixel as usize));
-            self.statistics.stray.merge(&stray);
+            found.renumber(|pixel| self.number_of(pixel as usize));
+            self.statistics.merge(&found);
         }
         let shadow_rays =
             shading::local_colors::<L>(&mut self.media, &mut self.hits, &mut self.shadow, &mut self.packet);
@@ -274,7 +311,8 @@ impl<'a, L: Lanes, O: Observer> Tracer<'a, L, O> {
     fn count_lost_light(&mut self) {
         for pixel in 0..self.lost_sizes.len() {
             if self.lost_sizes[pixel] > 0.0 {
-                self.statistics.lost.add(self.number_of(pixel), self.lost_sizes[pixel]);
+                let mean = self.lost_sizes[pixel] / f64::from(self.world.render.spp);
+                self.statistics.lost.add(self.number_of(pixel), mean);
             }
         }
     }

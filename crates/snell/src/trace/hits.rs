@@ -39,6 +39,8 @@ pub(crate) struct Hits {
     faces: Columns<4>,
     surface: Columns<10>,
     geometric: Columns<3>,
+    /// By what the colours of the surfaces are multiplied, if there are patterns; else empty.
+    tints: Columns<3>,
     /// Spheres that the rays may meet.
     seen: Few,
 }
@@ -118,6 +120,7 @@ impl Hits {
         let real_optics = world.render.integrator == Integrator::Whitted;
         self.surface.clear();
         self.geometric.clear();
+        self.tints.clear();
         for start in (0..self.len()).step_by(L::WIDTH) {
             let (mut primitives, mut materials) = ([0; MAX_WIDTH], [0.0; MAX_WIDTH]);
             for lane in 0..L::WIDTH.min(self.len() - start) {
@@ -147,6 +150,17 @@ impl Hits {
             self.surface.push(active, row);
             if real_optics {
                 self.geometric.push(active, geometric.unit().into());
+            }
+            if !world.patterns.is_empty() {
+                let there = there.bits();
+                let tint = Rgb::<L>::from_fn(
+                    #[inline(always)]
+                    |lane| {
+                        let seen = there >> lane & 1 != 0;
+                        if seen { world.tint(primitives[lane], point.lane(lane)) } else { Rgb::gray(1.0) }
+                    },
+                );
+                self.tints.push(active, tint.into());
             }
         }
     }
@@ -349,6 +363,24 @@ impl<L: Lanes> Batch<'_, L> {
         } else {
             Rgb::from_fn(|lane| value(self.material_of(lane)))
         }
+    }
+
+    /// The same of a colour that patterns multiply.
+    #[inline(always)]
+    pub fn patterned(&self, value: impl Fn(&Material) -> Rgb) -> Rgb<L> {
+        let color = self.material_color(value);
+        if self.hits.tints.len() == 0 {
+            return color;
+        }
+        let [r, g, b] = self.hits.tints.group(0, self.start);
+        color * Rgb::new(r, g, b)
+    }
+
+    /// The number of the material of one hit.
+    #[inline(always)]
+    pub fn material_number(&self, lane: usize) -> u32 {
+        let row = (self.start + lane).min(self.hits.len() - 1);
+        index(self.hits.surface.at(MATERIAL, row)) as u32
     }
 
     #[inline(always)]

@@ -9,7 +9,7 @@
 use super::hits::{Face, Hits, SKY};
 use super::media::{Media, OUTSIDE};
 use super::queue::Generation;
-use super::statistics::StrayExits;
+use super::statistics::{Overlap, Statistics};
 use crate::film::Rgb;
 use crate::geometry::Vec3;
 use crate::geometry::bvh::{PACKET, Packet};
@@ -74,14 +74,14 @@ pub(crate) struct FindInterfaces<'b, 'a, G> {
     pub media: &'b mut Media<'a>,
     pub ways: &'b mut Ways,
     pub packet: &'b mut Packet,
-    pub stray: &'b mut StrayExits,
+    pub statistics: &'b mut Statistics,
 }
 
 impl<G: Generation> Kernel for FindInterfaces<'_, '_, G> {
     type Output = ();
     #[inline(always)]
     fn run<L: Lanes>(self) {
-        let Self { hits, rays, media, ways, packet, stray } = self;
+        let Self { hits, rays, media, ways, packet, statistics } = self;
         let world = media.world();
         hits.clear();
         packet.two_sided = true;
@@ -100,7 +100,7 @@ impl<G: Generation> Kernel for FindInterfaces<'_, '_, G> {
                 let hit = world.tree.intersect::<L, false>(packet, open);
                 open = 0;
                 for ray in ones(hit) {
-                    match ways.meet(media, packet, ray, rays.pixel(first + ray), stray) {
+                    match ways.meet(media, packet, ray, rays.pixel(first + ray), statistics) {
                         Met::Face => met |= 1 << ray,
                         Met::Nothing(up_to) => {
                             open |= 1 << ray;
@@ -112,11 +112,11 @@ impl<G: Generation> Kernel for FindInterfaces<'_, '_, G> {
             for ray in ones(all & !met) {
                 // Every solid ends somewhere: a ray that leaves the scene in one has missed its way out.
                 if index(ways.before[ray]) as u32 != OUTSIDE {
-                    stray.add(rays.pixel(first + ray));
+                    statistics.stray.add(rays.pixel(first + ray));
                 }
                 (packet.t[ray], packet.primitive[ray]) = (f64::INFINITY, SKY);
             }
-            let seen = if world.background == Rgb::gray(0.0) { met } else { all };
+            let seen = if world.background.is_black() { met } else { all };
             for ray in ones(seen) {
                 ways.absorb(media, ray, packet.t[ray]);
             }
@@ -144,6 +144,13 @@ fn ones(mut bits: u64) -> impl Iterator<Item = usize> {
         bits &= bits.wrapping_sub(1);
         place
     })
+}
+
+/// Does a ray that goes on behind a thin face, in its plane, only meet another one of the same plane there? Between them is
+/// nothing but rounding.
+fn leaves_pane(world: &World, packet: &Packet, ray: usize) -> bool {
+    let (t, source, primitive) = (packet.t[ray], packet.source[ray], packet.primitive[ray]);
+    source >= 0.0 && t <= world.clearance && world.is_thin(index(primitive)) && world.is_thin(index(source))
 }
 
 impl Ways {
@@ -182,7 +189,7 @@ impl Ways {
         packet: &mut Packet,
         ray: usize,
         pixel: usize,
-        stray: &mut StrayExits,
+        statistics: &mut Statistics,
     ) -> Met {
         let world = media.world();
         let (t, primitive, before) =
@@ -190,7 +197,7 @@ impl Ways {
         let solid = world.solid_of(primitive as usize);
         if solid == NO_SOLID {
             (self.after[ray], self.outer[ray]) = (self.before[ray], 1.0);
-            return if t > 0.0 { Met::Face } else { Met::Nothing(t) };
+            return if t > 0.0 && !leaves_pane(world, packet, ray) { Met::Face } else { Met::Nothing(t) };
         }
         let (origin, dir) = packet.ways::<f64>(ray);
         let enters = world.enters(primitive as usize, solid, origin, dir, t);
@@ -208,10 +215,15 @@ impl Ways {
         }
         let Place { after, up_to, face, enters } = place;
         if after == before && !enters && t > self.since[ray] + world.clearance && !media.contains(before, solid) {
-            stray.add(pixel);
+            statistics.stray.add(pixel);
         }
         if media.top(before) == media.top(after) {
             self.before[ray] = f64::from(after);
+            if after != before && media.overlap(before, after) {
+                let other = world.primitive_of(media.top(after));
+                let (pixel, point) = (pixel as u64, origin + dir * t);
+                statistics.overlaps.add(Overlap { pixel, primitives: [primitive, other], point });
+            }
             return Met::Nothing(up_to);
         }
         let band = index(self.band[ray]) as u32;
@@ -242,7 +254,8 @@ impl Ways {
         world.tree.crossings(origin, dir, [t - world.clearance, t + world.clearance], &mut self.crossings);
         self.crossings.sort_by_key(|&(_, primitive)| primitive);
         let opaque = |&&(t, primitive): &&(f64, u32)| {
-            t > 0.0 && world.solid_of(primitive as usize) == NO_SOLID && f64::from(primitive) != source
+            let is_opaque = world.solid_of(primitive as usize) == NO_SOLID && !world.is_thin(primitive as usize);
+            t > 0.0 && is_opaque && f64::from(primitive) != source
         };
         if let Some(&found) = self.crossings.iter().find(opaque) {
             return Some(found);
@@ -253,14 +266,14 @@ impl Ways {
             std::mem::replace(&mut place.after, next) != next
         };
         self.crossings.retain(|face| crossed(face));
-        let of = |solid: u32| {
-            self.crossings.iter().rev().find(|(_, primitive)| world.solid_of(*primitive as usize) == solid)
+        let beside = |primitive: u32, solid: u32| {
+            let primitive = primitive as usize;
+            solid != NO_SOLID && (world.solid_of(primitive) == solid || world.front_of(primitive) == solid)
         };
-        let (into, out_of) = (media.top(place.after), media.top(before));
-        if let Some(&face) = of(into).filter(|_| into != NO_SOLID) {
-            (place.face, place.enters) = (face, true);
-        } else if let Some(&face) = of(out_of).filter(|_| out_of != NO_SOLID) {
-            (place.face, place.enters) = (face, false);
+        let of = |solid: u32| self.crossings.iter().rev().find(|&&(_, primitive)| beside(primitive, solid));
+        if let Some(&(t, primitive)) = of(media.top(place.after)).or_else(|| of(media.top(before))) {
+            place.face = (t, primitive);
+            place.enters = world.enters(primitive as usize, world.solid_of(primitive as usize), origin, dir, t);
         }
         None
     }

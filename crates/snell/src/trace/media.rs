@@ -4,6 +4,7 @@
 //! that of the solid with the highest priority, the last entered among equals (Schmidt and Budge, *Simple Nested
 //! Dielectrics in Ray Traced Images*, Journal of Graphics Tools 7(2), 2002); with no solid, the space between the objects.
 
+use super::pane::Pane;
 use crate::film::Rgb;
 use crate::geometry::{Bounds, Vec3};
 use crate::optics::absorption::transmittance_rgb;
@@ -61,7 +62,7 @@ impl<'a> Media<'a> {
         };
         media.intern(Vec::new());
         let camera = &world.camera;
-        let near = Bounds::of(camera.corners().into_iter().chain([camera.eye]));
+        let near = Bounds::of(camera.outermost().into_iter().chain([camera.eye]));
         if world.solids.iter().any(|solid| solid.bounds.meets(&near)) {
             media.eye = Some(media.around(camera.eye));
         }
@@ -82,6 +83,10 @@ impl<'a> Media<'a> {
             if solid != NO_SOLID {
                 let enters = self.world.enters(primitive as usize, solid, point, dir, t);
                 *balance.entry(solid).or_insert(0) += if enters { -1 } else { 1 };
+                let front = self.world.front_of(primitive as usize);
+                if front != NO_SOLID {
+                    *balance.entry(front).or_insert(0) += if enters { 1 } else { -1 };
+                }
             }
         }
         self.crossings = crossings;
@@ -120,12 +125,25 @@ impl<'a> Media<'a> {
     /// into one that is not in it.
     pub fn cross(&mut self, set: u32, primitive: u32, origin: Vec3, dir: Vec3, t: f64) -> u32 {
         let solid = self.world.solid_of(primitive as usize);
-        if solid == NO_SOLID
-            || self.world.enters(primitive as usize, solid, origin, dir, t) == self.contains(set, solid)
-        {
+        if solid == NO_SOLID {
             return set;
         }
-        self.across(set, solid)
+        let enters = self.world.enters(primitive as usize, solid, origin, dir, t);
+        if enters == self.contains(set, solid) {
+            return set;
+        }
+        let (after, front) = (self.across(set, solid), self.world.front_of(primitive as usize));
+        // What is in front of an interface is left on the way in, and entered on the way out.
+        if front != NO_SOLID && enters == self.contains(after, front) { self.across(after, front) } else { after }
+    }
+
+    /// Between these sets a solid was left that had the same priority as the one that is there before and after, and another
+    /// medium: nobody has said which of the two is there.
+    pub fn overlap(&self, before: u32, after: u32) -> bool {
+        let (medium, left) = (self.medium(after), &self.sets[before as usize].solids);
+        let left = left.iter().filter(|&&solid| !self.contains(after, solid));
+        left.map(|&solid| &self.world.solids[solid as usize].medium)
+            .any(|other| other.priority == medium.priority && other != medium)
     }
 
     pub fn world(&self) -> &'a World {
@@ -161,14 +179,17 @@ impl<'a> Media<'a> {
         // What lies in one place is one interface, as for all rays.
         for place in crossings.chunk_by(|a, b| b.0 - a.0 <= clearance) {
             let (t, first) = place[0];
-            let (mut next, mut entered) = (set, None);
+            let (mut next, mut entered, mut pane) = (set, None, false);
             for &(t, primitive) in place {
                 let solid = world.solid_of(primitive as usize);
                 let leaves = f64::from(primitive) == way.source;
                 if solid == NO_SOLID {
                     let starts = leaves && world.starts_at(primitive as usize, way.origin, way.dir, t);
-                    if t > 0.0 && t < distance && !starts {
-                        light = Rgb::gray(0.0);
+                    // On the edge between two triangles a pane is met twice, and is one all the same.
+                    let is_pane = world.is_thin(primitive as usize);
+                    let again = is_pane && std::mem::replace(&mut pane, true);
+                    if t > 0.0 && t < distance && !starts && !again {
+                        light = light * self.through_surface(set, primitive as usize, way, t);
                     }
                     continue;
                 }
@@ -183,7 +204,7 @@ impl<'a> Media<'a> {
             }
             if self.top(next) != self.top(set) {
                 if let Some((_, primitive)) = entered.filter(|(solid, _)| *solid == self.top(next)) {
-                    light = light * world.lets_through(primitive as usize);
+                    light = light * world.lets_through(primitive as usize, way.origin + way.dir * t);
                 }
                 let (before, after) = (*self.medium(set), *self.medium(next));
                 light = light * transmittance_rgb::<f64>(before.sigma_a, t - since);
@@ -199,6 +220,17 @@ impl<'a> Media<'a> {
         }
         self.crossings = crossings;
         light * transmittance_rgb::<f64>(self.medium(set).sigma_a, distance - since)
+    }
+
+    /// What a surface that no solid has lets through: a thin face something, others nothing.
+    fn through_surface(&self, set: u32, primitive: usize, way: &Way, t: f64) -> Rgb {
+        let (world, point) = (self.world, way.origin + way.dir * t);
+        let material = &world.materials[world.material_of(primitive) as usize];
+        let Some(thickness) = material.thickness.filter(|_| world.is_thin(primitive)) else { return Rgb::gray(0.0) };
+        let eta = material.eta / self.medium(set).eta;
+        let pane = Pane::<f64> { thickness, eta, sigma_a: material.absorption() };
+        let cos_theta_i = world.geometric_normal(primitive, point).dot(way.dir).abs();
+        world.lets_through(primitive, point) * pane.passage(cos_theta_i).transmittance
     }
 
     /// Is a ray in this solid?

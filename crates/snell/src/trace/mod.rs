@@ -18,7 +18,9 @@ mod hits;
 mod interfaces;
 mod lecture;
 mod media;
+mod pane;
 mod queue;
+mod sampler;
 mod shading;
 mod statistics;
 mod tree;
@@ -26,6 +28,6 @@ mod whitted;
 
 pub(crate) use generation::Tracer;
 pub use queue::RayKind;
-pub use statistics::{LostLight, RayCounts, Statistics, StrayExits};
+pub use statistics::{LostLight, Overlap, Overlaps, RayCounts, Statistics, StrayExits};
 pub(crate) use tree::Recorder;
-pub use tree::{Node, RayTree};
+pub use tree::{Node, PixelTrace, RayTree};

@@ -2,15 +2,15 @@
 
 use super::hits::{Batch, Hits};
 use super::lecture::T_MIN;
-use super::media::{Media, Way};
+use super::media::{Media, OUTSIDE, Way};
 use super::whitted;
 use crate::film::Rgb;
 use crate::geometry::Vec3;
 use crate::geometry::bvh::{Nearest, PACKET, Packet};
-use crate::lanes::{Columns, Lanes, MAX_WIDTH, Mask, index};
+use crate::lanes::{Columns, Lanes, Mask, index};
 use crate::optics::phong::{self, Surface};
 use crate::scene::{Integrator, Shadows};
-use crate::world::{LightSource, World};
+use crate::world::LightSource;
 
 /// Columns of the rays towards a light.
 const HIT: usize = 0;
@@ -61,61 +61,76 @@ impl ShadowRays {
                 // Light does not shine through the body of a smoothed mesh.
                 lit = lit & batch.geometric_normal().dot(wi).gt(L::splat(0.0));
             }
+            if let Some(spot) = &light.spot {
+                lit = lit & spot.share(wi).gt(L::splat(0.0));
+            }
             self.wi.push(L::Mask::first(hits.len() - start), wi.into());
+            let mut asked = lit;
             if with_shadows && (tinted || lit.any()) {
                 count += lit.bits().count_ones() as usize;
                 if tinted {
-                    lit = self.tint(media, &batch, lit, wi, distance);
-                } else if let Some(spheres) = world.tree.few() {
-                    let nothing = Nearest::none(lit, L::splat(self.t_min), distance, source);
+                    self.light.push(L::Mask::first(hits.len() - start), Rgb::gray(1.0).splat::<L>().into());
+                    // Within a medium every way is dimmed.
+                    let within = lit & !batch.face().before.eq(L::splat(f64::from(OUTSIDE)));
+                    asked = asked & !within;
+                    lit = self.tint::<L>(media, &batch, start, lit, within, (wi, distance));
+                }
+                asked = asked & lit;
+                if let Some(spheres) = world.tree.few() {
+                    let nothing = Nearest::none(asked, L::splat(self.t_min), distance, source);
                     let hit = if real_optics {
                         nothing.among(true, spheres, point, wi).hit
                     } else {
                         nothing.among(false, spheres, point, wi).hit
                     };
-                    lit = lit & !hit;
+                    lit = if tinted {
+                        self.tint::<L>(media, &batch, start, lit, hit, (wi, distance))
+                    } else {
+                        lit & !hit
+                    };
                 } else {
                     let (row, p) = (L::ramp(start), point);
-                    self.rays.push(lit, [row, p.x, p.y, p.z, wi.x, wi.y, wi.z, distance, source]);
+                    self.rays.push(asked, [row, p.x, p.y, p.z, wi.x, wi.y, wi.z, distance, source]);
                 }
             }
             self.lit[start / 64] |= u64::from(lit.bits()) << (start % 64);
         }
-        self.block::<L>(world, packet);
+        self.block::<L>(media, packet);
         count
     }
 
-    /// Follows the light straight through what is transparent; says which hits any of it reaches.
+    /// Follows the light of some of the lit hits straight through what is transparent; says which are lit then.
     #[inline(always)]
     fn tint<L: Lanes>(
         &mut self,
         media: &mut Media<'_>,
         hits: &Batch<'_, L>,
+        start: usize,
         lit: L::Mask,
-        wi: Vec3<L>,
-        distance: L,
+        dimmed: L::Mask,
+        (wi, distance): (Vec3<L>, L),
     ) -> L::Mask {
+        if !dimmed.any() {
+            return lit;
+        }
         let (point, source, medium) = (hits.point(), hits.primitive(), hits.face().before);
-        let (mut light, mut reached) = ([[0.0; MAX_WIDTH]; 3], 0);
+        let mut dark = 0;
         for lane in 0..L::WIDTH {
-            if !lit.test(lane) {
-                continue;
-            }
-            let way = Way { origin: point.lane(lane), dir: wi.lane(lane), source: source.lane(lane) };
-            let passed = media.light_along(&way, distance.lane(lane), index(medium.lane(lane)) as u32);
-            reached |= u32::from(passed != Rgb::gray(0.0)) << lane;
-            for (column, value) in light.iter_mut().zip(passed.to_array()) {
-                column[lane] = value;
+            if dimmed.test(lane) {
+                let way = Way { origin: point.lane(lane), dir: wi.lane(lane), source: source.lane(lane) };
+                let passed = media.light_along(&way, distance.lane(lane), index(medium.lane(lane)) as u32);
+                dark |= u32::from(passed == Rgb::gray(0.0)) << lane;
+                self.light.replace::<f64, 3>(0, start + lane, passed.into());
             }
         }
-        let light = [L::load(&light[0]), L::load(&light[1]), L::load(&light[2])];
-        self.light.push(L::Mask::first(L::WIDTH), light);
-        L::Mask::from_bits(reached)
+        lit & !L::Mask::from_bits(dark)
     }
 
-    /// Takes the light from the hits whose rays towards it meet anything.
+    /// Takes the light from the hits whose rays towards it meet anything, or what that takes of it.
     #[inline(always)]
-    fn block<L: Lanes>(&mut self, world: &World, packet: &mut Packet) {
+    fn block<L: Lanes>(&mut self, media: &mut Media<'_>, packet: &mut Packet) {
+        let world = media.world();
+        let tinted = world.render.shadows == Shadows::Tinted;
         let shear = world.tree.has_triangles();
         for first in (0..self.rays.len()).step_by(PACKET) {
             let count = (self.rays.len() - first).min(PACKET);
@@ -133,9 +148,20 @@ impl ShadowRays {
             }
             let mut blocked = world.tree.intersect::<L, true>(packet, u64::MAX >> (PACKET - count));
             while blocked != 0 {
-                let hit = index(self.rays.at(HIT, first + blocked.trailing_zeros() as usize));
+                let ray = first + blocked.trailing_zeros() as usize;
+                let hit = index(self.rays.at(HIT, ray));
                 blocked &= blocked - 1;
-                self.lit[hit / 64] &= !(1 << (hit % 64));
+                let mut dark = true;
+                if tinted {
+                    let [x, y, z, dx, dy, dz, distance, source] = self.rays.group::<f64, 8>(ORIGIN, ray);
+                    let way = Way { origin: Vec3::new(x, y, z), dir: Vec3::new(dx, dy, dz), source };
+                    let passed = media.light_along(&way, distance, OUTSIDE);
+                    self.light.replace::<f64, 3>(0, hit, passed.into());
+                    dark = passed == Rgb::gray(0.0);
+                }
+                if dark {
+                    self.lit[hit / 64] &= !(1 << (hit % 64));
+                }
             }
         }
     }
@@ -153,7 +179,7 @@ pub(crate) fn local_colors<L: Lanes>(
     let tinted = world.render.shadows == Shadows::Tinted;
     let ambient = world.ambient.splat::<L>();
     for start in (0..hits.len()).step_by(L::WIDTH) {
-        let light = ambient * hits.batch::<L>(world, start).material_color(|m| m.ka);
+        let light = ambient * hits.batch::<L>(world, start).patterned(|m| m.ka);
         hits.set_local_color(start, light);
     }
     let mut rays = 0;
@@ -166,7 +192,7 @@ pub(crate) fn local_colors<L: Lanes>(
             }
             let batch = hits.batch::<L>(world, start);
             let surface = Surface {
-                kd: batch.material_color(|m| m.kd),
+                kd: batch.patterned(|m| m.kd),
                 ks: batch.material_color(|m| m.ks),
                 spow: batch.material(|m| m.spow),
             };
@@ -176,9 +202,13 @@ pub(crate) fn local_colors<L: Lanes>(
                 intensity = intensity * Rgb::new(r, g, b);
             }
             let [x, y, z] = shadow.wi.group(0, start);
+            let wi = Vec3::new(x, y, z);
+            if let Some(spot) = &light.spot {
+                let share = spot.share(wi);
+                intensity = intensity * Rgb::new(share, share, share);
+            }
             let before = batch.local_color();
-            let [diffuse, highlight] =
-                phong::light(lit, batch.normal(), batch.wo(), Vec3::new(x, y, z), intensity, &surface);
+            let [diffuse, highlight] = phong::light(lit, batch.normal(), batch.wo(), wi, intensity, &surface);
             hits.set_local_color(start, Rgb::select(lit, before + diffuse + highlight, before));
         }
     }

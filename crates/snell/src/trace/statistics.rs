@@ -1,5 +1,7 @@
 //! What a render did: rays by kind and depth, and the light that was cut off.
 
+use crate::geometry::Vec3;
+
 /// Counts and losses of a render. Independent of threads, tiles and lanes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Statistics {
@@ -11,6 +13,44 @@ pub struct Statistics {
     pub lost: LostLight,
     /// Exits from solids that had not been entered.
     pub stray: StrayExits,
+    /// Places where it is not said which of two media is there.
+    pub overlaps: Overlaps,
+}
+
+/// Rays in two solids of the same priority and of different media that cross each other.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Overlaps {
+    /// How many such places rays have met.
+    pub count: u64,
+    /// The first of them.
+    pub first: Option<Overlap>,
+}
+
+/// One of them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Overlap {
+    /// The pixel whose ray met it: its number in the picture, row by row.
+    pub pixel: u64,
+    /// Primitives of the two solids: the one that is left, and one of the other.
+    pub primitives: [u32; 2],
+    /// Where the first ends within the second.
+    pub point: Vec3,
+}
+
+impl Overlaps {
+    pub(crate) fn add(&mut self, overlap: Overlap) {
+        self.merge(&Self { count: 1, first: Some(overlap) });
+    }
+
+    fn merge(&mut self, other: &Self) {
+        self.count += other.count;
+        // Within a pixel the order is that of its rays, whoever traces them.
+        let later = |a: Overlap, b: Overlap| b.pixel < a.pixel;
+        self.first = match (self.first, other.first) {
+            (Some(a), Some(b)) if later(a, b) => Some(b),
+            (a, b) => a.or(b),
+        };
+    }
 }
 
 /// Rays that met a face from inside without having entered its solid, which was passed over, or that left the scene without
@@ -28,7 +68,7 @@ impl StrayExits {
         self.merge(&Self { count: 1, first_pixel: Some(pixel as u64) });
     }
 
-    pub(crate) fn merge(&mut self, other: &Self) {
+    fn merge(&mut self, other: &Self) {
         self.count += other.count;
         self.first_pixel = [self.first_pixel, other.first_pixel].into_iter().flatten().min();
     }
@@ -122,10 +162,19 @@ impl Statistics {
             *sum += count;
         }
         self.stray.merge(&other.stray);
+        self.overlaps.merge(&other.overlaps);
         self.lost.rays += other.lost.rays;
         self.lost.sum += other.lost.sum;
         if other.lost.rays > 0 {
             self.lost.offer_worst(other.lost.worst);
+        }
+    }
+
+    /// Numbers of pixels in a tile become those in the picture, for what has been found out of the ordinary.
+    pub(crate) fn renumber(&mut self, number_of: impl Fn(u64) -> u64) {
+        self.stray.first_pixel = self.stray.first_pixel.map(&number_of);
+        if let Some(overlap) = &mut self.overlaps.first {
+            overlap.pixel = number_of(overlap.pixel);
         }
     }
 

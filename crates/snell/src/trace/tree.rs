@@ -1,6 +1,6 @@
 //! The ray tree of one pixel, recorded by the engine that renders: there is no second tracer.
 
-use super::generation::Observer;
+use super::generation::{Observer, mean};
 use super::hits::Hits;
 use super::media::WHITE;
 use super::queue::{Generation, RayKind};
@@ -51,10 +51,31 @@ impl RayTree {
     }
 }
 
+/// All rays of all samples of one pixel.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PixelTrace {
+    /// What the engine made of it: the film's value.
+    pub radiance: Rgb,
+    /// The tree of each sample.
+    pub samples: Vec<RayTree>,
+}
+
+impl PixelTrace {
+    /// The trees added up in the engine's order: the pixel, bit for bit.
+    pub fn sum(&self) -> Rgb {
+        match self.samples.as_slice() {
+            [only] => only.sum(),
+            all => mean(all.iter().fold(Rgb::black(), |sum, tree| sum + tree.sum()), all.len() as u32),
+        }
+    }
+}
+
 /// Writes down every generation of a pixel.
 #[derive(Debug, Default)]
 pub(crate) struct Recorder {
-    pub tree: RayTree,
+    /// The trees of the samples that are done.
+    pub samples: Vec<RayTree>,
+    tree: RayTree,
     depth: u32,
     /// Where the previous generation starts.
     parents: usize,
@@ -87,5 +108,11 @@ impl Observer for Recorder {
         }
         self.parents = start;
         self.depth += 1;
+    }
+
+    fn sample(&mut self, lost: &[Rgb]) {
+        let nodes = std::mem::take(&mut self.tree.nodes);
+        self.samples.push(RayTree { nodes, lost: lost.first().copied().unwrap_or_default() });
+        (self.depth, self.parents) = (0, 0);
     }
 }

@@ -15,12 +15,15 @@
 
 use super::hits::Batch;
 use super::media::{Media, WHITE};
+use super::pane::{Pane, Passage};
 use super::queue::{Load, RayKind, RayQueue, Rays, Weight};
 use crate::film::Rgb;
 use crate::geometry::Vec3;
 use crate::lanes::{Lanes, Mask};
 use crate::optics::fresnel::fresnel_dielectric;
 use crate::optics::snell::{reflect, refract};
+use crate::scene::Material;
+use crate::world::Background;
 
 /// Rays in lanes, and which of them leave.
 type Leaving<L> = (<L as Lanes>::Mask, Rays<L>);
@@ -39,7 +42,58 @@ fn opacity<L: Lanes>(hits: &Batch<'_, L>) -> Rgb<L> {
         #[inline(always)]
         |m| m.ko,
     );
-    Rgb::select(face.before.eq(face.after), Rgb::gray(1.0).splat(), ko)
+    Rgb::select(face.before.eq(face.after) & !is_pane(hits), Rgb::gray(1.0).splat(), ko)
+}
+
+/// Which hits are on thin faces, whole panes?
+#[inline(always)]
+fn is_pane<L: Lanes>(hits: &Batch<'_, L>) -> L::Mask {
+    let face = hits.face();
+    if !(face.before.eq(face.after) & hits.active).any() {
+        return L::Mask::from_bits(0);
+    }
+    let thickness = hits.material(
+        #[inline(always)]
+        |m| if m.is_transparent() { m.thickness.unwrap_or(-1.0) } else { -1.0 },
+    );
+    hits.active & face.before.eq(face.after) & !thickness.lt(L::splat(0.0))
+}
+
+/// What the panes do, and from where rays go on behind them.
+#[inline(always)]
+fn through_panes<L: Lanes>(hits: &Batch<'_, L>, media: &Media<'_>) -> (Passage<L>, Vec3<L>) {
+    let (wo, n, ng) = (hits.wo(), hits.normal(), hits.geometric_normal());
+    let n = Vec3::select(wo.dot(n).gt(L::splat(0.0)), n, ng);
+    let eta = L::from_fn(
+        #[inline(always)]
+        |lane| {
+            let [before, _, band] = hits.media_of(lane);
+            let own = hits.world.eta_of(hits.material_number(lane), (band != WHITE).then_some(band));
+            own / media.eta(before, band)
+        },
+    );
+    let thickness = hits.material(
+        #[inline(always)]
+        |m| m.thickness.unwrap_or(0.0),
+    );
+    let sigma_a = hits.material_color(Material::absorption);
+    let pane = Pane { thickness, eta, sigma_a };
+    (pane.passage(wo.dot(n)), pane.behind(hits.point(), n, wo))
+}
+
+/// What is seen where nothing is.
+#[inline(always)]
+fn background<L: Lanes>(hits: &Batch<'_, L>) -> Rgb<L> {
+    match &hits.world.background {
+        Background::Color(color) => color.splat(),
+        sky => {
+            let (there, dir) = (hits.is_sky().bits(), -hits.wo());
+            Rgb::from_fn(
+                #[inline(always)]
+                |lane| if there >> lane & 1 == 0 { Rgb::gray(0.0) } else { sky.color(dir.lane(lane)) },
+            )
+        }
+    }
 }
 
 /// What a batch of hits adds, and the mirror and refracted rays that leave. White rays that meet dispersion split: their
@@ -63,14 +117,17 @@ pub(crate) fn answer<L: Lanes>(
         |m| m.emission,
     );
     let own = ko * hits.local_color() + Rgb::select(outer, emission, none);
-    let sky = hits.world.background.splat();
-    let contribution = throughput * Rgb::select(hits.is_sky(), sky, own);
+    let contribution = throughput * Rgb::select(hits.is_sky(), background(hits), own);
 
-    let dye = hits.material_color(
+    let dyed = hits.material(
         #[inline(always)]
-        |m| if m.dyed { m.kd } else { Rgb::gray(1.0) },
+        |m| if m.dyed { 1.0 } else { 0.0 },
     );
-    let (clear, dye) = (white - ko, Rgb::select(outer, dye, white));
+    let dye = hits.patterned(
+        #[inline(always)]
+        |m| m.kd,
+    );
+    let (clear, dye) = (white - ko, Rgb::select(outer & dyed.gt(zero), dye, white));
 
     let to = Directions::new(hits, relative_index(hits, media, None));
     let mut reflectance = Rgb::new(to.reflectance, to.reflectance, to.reflectance);
@@ -89,11 +146,20 @@ pub(crate) fn answer<L: Lanes>(
         }
         reflectance = Rgb::select(splits, reflected, reflectance);
     }
-    let band = hits.band();
+    let (band, mut goes_on, mut transmittance) = (hits.band(), to.refracts & goes_through, white - reflectance);
+    let (mut origin, mut onward) = (hits.point(), to.refracted);
+    let panes = is_pane(hits);
+    if panes.any() {
+        let (passage, behind) = through_panes(hits, media);
+        reflectance = Rgb::select(panes, passage.reflectance, reflectance);
+        transmittance = Rgb::select(panes, passage.transmittance, transmittance);
+        (origin, onward) = (Vec3::select(panes, behind, origin), Vec3::select(panes, -hits.wo(), onward));
+        goes_on = goes_on | panes;
+    }
     let mirror = child(hits, to.mirror, face.before, band, throughput * (ko * kr + clear * reflectance));
-    let refracted_weight = throughput * (clear * dye) * (white - reflectance);
-    let (sends, refracted) = child(hits, to.refracted, face.after, band, refracted_weight);
-    (contribution, mirror, (sends & to.refracts & goes_through & !splits, refracted))
+    let refracted_weight = throughput * (clear * dye) * transmittance;
+    let (sends, refracted) = child(hits, onward, face.after, band, refracted_weight);
+    (contribution, mirror, (sends & goes_on & !splits, Rays { origin, ..refracted }))
 }
 
 /// A ray that leaves from each hit, and where it carries anything.

@@ -2,7 +2,7 @@
 
 use crate::geometry::Vec3;
 use crate::lanes::Lanes;
-use crate::scene::Camera;
+use crate::scene::{Camera, Render};
 
 /// A camera with its axes, ready to make rays.
 #[derive(Clone, Debug)]
@@ -16,18 +16,26 @@ pub struct CameraFrame {
     /// Width and height of the picture in pixels.
     pub size: [u32; 2],
     near: f64,
+    /// How far from its point of the grid a sample of a pixel may be, in pixels.
+    spread: f64,
 }
 
 impl CameraFrame {
     /// Places a camera that has been validated.
-    pub fn new(camera: &Camera, size: [u32; 2]) -> Self {
-        let axes = camera.axes().unwrap_or_default();
-        Self { eye: camera.eye.into(), axes, bounds: camera.bounds, size, near: camera.near }
+    pub fn new(camera: &Camera, render: &Render) -> Self {
+        let (axes, bounds) = (camera.axes().unwrap_or_default(), camera.window(render.size));
+        let spread = if render.spp > 1 { 0.5 } else { 0.0 };
+        Self { eye: camera.eye.into(), axes, bounds, size: render.size, near: camera.near, spread }
     }
 
     /// Origin and direction of the ray through a pixel, (0, 0) on top left.
     pub fn ray(&self, x: u32, y: u32) -> (Vec3, Vec3) {
-        self.rays(self.across(x), self.up(y))
+        self.rays(self.across(x.into()), self.up(y.into()))
+    }
+
+    /// How far from its point of the grid a sample of a pixel may be, in pixels.
+    pub(crate) fn spread(&self) -> f64 {
+        self.spread
     }
 
     /// Where the image plane is, along the axis that points backwards.
@@ -35,14 +43,14 @@ impl CameraFrame {
         self.near
     }
 
-    /// How far right of the middle of the image plane a column of pixels is.
-    pub(crate) fn across(&self, x: u32) -> f64 {
+    /// How far right of the middle of the image plane a column of pixels is, or a place between two.
+    pub(crate) fn across(&self, x: f64) -> f64 {
         let [left, right, ..] = self.bounds;
         left + share(x, self.size[0]) * (right - left)
     }
 
-    /// How far above the middle of the image plane a row of pixels is.
-    pub(crate) fn up(&self, y: u32) -> f64 {
+    /// How far above the middle of the image plane a row of pixels is, or a place between two.
+    pub(crate) fn up(&self, y: f64) -> f64 {
         let [.., bottom, top] = self.bounds;
         top - share(y, self.size[1]) * (top - bottom)
     }
@@ -63,7 +71,21 @@ impl CameraFrame {
 
     /// The four corners of the picture on the image plane.
     pub fn corners(&self) -> [Vec3; 4] {
-        let [left, right, bottom, top] = self.bounds;
+        self.corners_of(self.bounds)
+    }
+
+    /// The corners of all that samples look through.
+    pub(crate) fn outermost(&self) -> [Vec3; 4] {
+        let [mut left, mut right, mut bottom, mut top] = self.bounds;
+        if self.spread > 0.0 {
+            let [last_column, last_row] = self.size.map(|n| f64::from(n - 1) + self.spread);
+            [left, right] = [self.across(-self.spread), self.across(last_column)];
+            [top, bottom] = [self.up(-self.spread), self.up(last_row)];
+        }
+        self.corners_of([left, right, bottom, top])
+    }
+
+    fn corners_of(&self, [left, right, bottom, top]: [f64; 4]) -> [Vec3; 4] {
         [self.point(left, bottom), self.point(right, bottom), self.point(left, top), self.point(right, top)]
     }
 
@@ -75,24 +97,18 @@ impl CameraFrame {
 }
 
 /// How far along a row of `count` pixels: 0 at the first, 1 at the last, the middle where there is only one.
-fn share(index: u32, count: u32) -> f64 {
-    if count == 1 { 0.5 } else { f64::from(index) / f64::from(count - 1) }
+fn share(place: f64, count: u32) -> f64 {
+    if count == 1 { 0.5 + place } else { place / f64::from(count - 1) }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Integrator;
 
     fn frame(size: [u32; 2]) -> CameraFrame {
-        let camera = Camera {
-            eye: [0.0, 0.0, 10.0],
-            look_at: [0.0, 0.0, 0.0],
-            up: [0.0, 1.0, 0.0],
-            bounds: [-2.0, 4.0, -1.0, 3.0],
-            near: -5.0,
-            far: None,
-        };
-        CameraFrame::new(&camera, size)
+        let camera = Camera::new([0.0, 0.0, 10.0], [0.0; 3], [0.0, 1.0, 0.0], [-2.0, 4.0, -1.0, 3.0], -5.0);
+        CameraFrame::new(&camera, &Render::new(Integrator::Lecture, size))
     }
 
     #[test]

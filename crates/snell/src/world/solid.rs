@@ -1,6 +1,6 @@
 //! Solids: what encloses a medium, and which primitives are its surface.
 
-use super::World;
+use super::{NO_PRIMITIVE, World};
 use crate::film::Rgb;
 use crate::geometry::bvh::{Instance, Shapes};
 use crate::geometry::solid::{Component, EdgePlace, Found, Orientation, Report, structure};
@@ -24,6 +24,8 @@ pub(crate) struct Solid {
     pub inward: bool,
     /// May it touch something else, so that a ray meets both in one place?
     pub touches: bool,
+    /// Is it no body, but all that interfaces say to be filled with this material?
+    pub between_faces_of: Option<u32>,
     /// Its box.
     pub bounds: Bounds,
 }
@@ -69,7 +71,7 @@ impl MeshSolids {
         for (number, component) in number_of.iter_mut().zip(&report.components).filter(|(_, c)| !c.cavity) {
             *number = solids.len() as u32;
             let inward = (component.orientation == Orientation::Inward) != turned;
-            solids.push(Solid { medium, inward, touches: false, bounds: component.bounds });
+            solids.push(Solid { medium, inward, touches: false, between_faces_of: None, bounds: component.bounds });
         }
         for i in 0..report.components.len() {
             if report.components[i].cavity {
@@ -136,6 +138,14 @@ impl World {
         Medium { eta: m.eta, spectrum, sigma_a: m.absorption(), priority: m.priority }
     }
 
+    /// The index of a material for a band of light.
+    pub(crate) fn eta_of(&self, material: u32, band: Option<u32>) -> f64 {
+        let spectrum = self.spectrum_of[material as usize].zip(band);
+        spectrum.map_or(self.materials[material as usize].eta, |(spectrum, band)| {
+            self.spectra[spectrum as usize][band as usize]
+        })
+    }
+
     /// Works out the indices of all materials: of the d line, and of the bands of real optics.
     pub(super) fn find_indices(&mut self) {
         if self.render.integrator == Integrator::Whitted && self.render.bands > 1 {
@@ -145,6 +155,7 @@ impl World {
             // Validation has seen to it that there are indices.
             let Ok(dispersion) = material.dispersion() else { continue };
             material.eta = dispersion.eta(LINE_D_NM).unwrap_or(material.eta);
+            material.sigma_a = Some(material.absorption());
             let spectrum: Vec<f64> = self.bands.iter().filter_map(|b| dispersion.eta(b.wavelength_nm).ok()).collect();
             let differ = spectrum.iter().any(|eta| eta.to_bits() != material.eta.to_bits());
             let known = self.spectra.iter().position(|other| *other == spectrum);
@@ -178,7 +189,10 @@ impl World {
         let too_many = self.solids.len().saturating_mul(boxes.len()) > COMPARED * COMPARED;
         let touches = |number: usize| {
             let grown = Bounds { min: boxes[number].min - room, max: boxes[number].max + room };
-            too_many || boxes.iter().enumerate().any(|(other, bounds)| other != number && grown.meets(bounds))
+            let interface = self.solids[number].between_faces_of.is_some();
+            too_many
+                || interface
+                || boxes.iter().enumerate().any(|(other, bounds)| other != number && grown.meets(bounds))
         };
         (0..self.solids.len()).map(touches).collect()
     }
@@ -190,6 +204,17 @@ impl World {
             Some(&solid) => solid,
             None => self.solid_in_model(primitive),
         }
+    }
+
+    /// A primitive of a solid's surface.
+    pub(crate) fn primitive_of(&self, solid: u32) -> u32 {
+        (0..self.primitive_count() as u32).find(|&p| self.solid_of(p as usize) == solid).unwrap_or(NO_PRIMITIVE)
+    }
+
+    /// The solid in front of a primitive, if that is an interface between two; or [`NO_SOLID`].
+    #[inline(always)]
+    pub(crate) fn front_of(&self, primitive: usize) -> u32 {
+        self.surfaces.front_of.get(primitive).copied().unwrap_or(NO_SOLID)
     }
 
     fn solid_in_model(&self, primitive: usize) -> u32 {

@@ -18,6 +18,12 @@ pub(super) struct Surfaces {
     pub material_of: Vec<u32>,
     /// The solid whose surface each is; `NO_SOLID`, or no entry at all, where nothing goes through.
     pub solid_of: Vec<u32>,
+    /// The solid in front of each, where it is an interface between two, as above.
+    pub front_of: Vec<u32>,
+    /// Texture coordinates at the corners of the triangles that have a texture, and for each primitive where they are; `FLAT`, or
+    /// no entry at all, where it has none.
+    pub corner_uvs: Vec<[[f64; 2]; 3]>,
+    pub corner_uvs_of: Vec<u32>,
     /// Normals at the corners of the triangles that are smooth.
     pub corner_normals: Vec<[Vec3; 3]>,
     /// For each primitive where its corner normals are, `FLAT` if it has none; empty if none has any.
@@ -58,6 +64,9 @@ impl Surfaces {
     pub fn memory(&self) -> usize {
         size_of_val(self.material_of.as_slice())
             + size_of_val(self.solid_of.as_slice())
+            + size_of_val(self.front_of.as_slice())
+            + size_of_val(self.corner_uvs.as_slice())
+            + size_of_val(self.corner_uvs_of.as_slice())
             + size_of_val(self.corner_normals.as_slice())
             + size_of_val(self.corner_normals_of.as_slice())
     }
@@ -99,10 +108,10 @@ impl World {
     }
 
     /// The share of light that passes the outer side of a transparent surface, without what Fresnel reflects.
-    pub(crate) fn lets_through(&self, primitive: usize) -> Rgb {
+    pub(crate) fn lets_through(&self, primitive: usize, point: Vec3) -> Rgb {
         let material = &self.materials[self.material_of(primitive) as usize];
         let clear = Rgb::gray(1.0) - material.ko;
-        if material.dyed { clear * material.kd } else { clear }
+        if material.dyed { clear * material.kd * self.tint(primitive, point) } else { clear }
     }
 
     /// Is a crossing of the primitive on which a ray starts only its start? Not if it is the far wall of a sphere that the ray
@@ -134,6 +143,21 @@ impl World {
                 self.tree.model(placement.model).corners(id).map(|corner| placement.to_world.apply(corner))
             }
         }
+    }
+
+    /// The texture coordinates at the corners of a triangle, if it has any.
+    pub(super) fn corner_uvs(&self, primitive: usize) -> Option<[[f64; 2]; 3]> {
+        let (surfaces, id) = match self.placement(primitive) {
+            None => (&self.surfaces, primitive),
+            Some((placement, id)) => (&self.models[placement.model], id),
+        };
+        surfaces.corner_uvs.get(*surfaces.corner_uvs_of.get(id)? as usize).copied()
+    }
+
+    /// Is it one face that stands for a whole pane?
+    pub(crate) fn is_thin(&self, primitive: usize) -> bool {
+        let material = &self.materials[self.material_of(primitive) as usize];
+        material.thickness.is_some() && material.is_transparent()
     }
 
     /// The interpolated normal of a triangle with corners there; `None` on a flat one.

@@ -6,43 +6,88 @@ use super::primitives::{SPHERE, TRIANGLE};
 use crate::geometry::ray::{Shear, axes, inverse, main_axis};
 use crate::geometry::{Vec3, sphere, triangle};
 
+/// What a ray needs for every box and triangle.
+struct Line {
+    origin: Vec3,
+    dir: Vec3,
+    range: [f64; 2],
+    /// For each axis the inverse of the direction, and whether boxes are entered at their high side.
+    inverse: [f64; 3],
+    backward: [bool; 3],
+    /// Origin and shear along its main axis.
+    axes: [usize; 3],
+    permuted: Vec3,
+    shear: Shear<f64>,
+}
+
+impl Line {
+    fn new(origin: Vec3, dir: Vec3, range: [f64; 2]) -> Self {
+        let (inverse, axes) = ([0, 1, 2].map(|axis| inverse(dir.component(axis))), axes(main_axis(dir)));
+        Self {
+            origin,
+            dir,
+            range,
+            inverse,
+            backward: inverse.map(|i| i < 0.0),
+            axes,
+            permuted: origin.permuted(axes),
+            shear: Shear::new(dir.permuted(axes)),
+        }
+    }
+
+    /// Which boxes of a node does the line meet within its range? A bit for each.
+    fn meets(&self, node: &Node) -> u32 {
+        let [mut enter, mut leave] = self.range.map(|t| [t; WIDTH]);
+        for axis in 0..3 {
+            let (o, i, side) = (self.origin.component(axis), self.inverse[axis], usize::from(self.backward[axis]));
+            let (near, far) = (&node.planes[plane(axis, side)], &node.planes[plane(axis, 1 - side)]);
+            for place in 0..WIDTH {
+                enter[place] = ((f64::from(near[place]) - o) * i).max(enter[place]);
+                leave[place] = ((f64::from(far[place]) - o) * i).min(leave[place]);
+            }
+        }
+        (0..WIDTH).map(|place| u32::from(enter[place] <= leave[place]) << place).sum()
+    }
+}
+
+/// The most that can wait on the way down: seven for each level.
+const WAITING: usize = 7 * 65 + 1;
+
 impl Bvh {
     /// Appends every crossing from `range[0]` to `range[1]`, both included: distance and primitive, by distance and then by
     /// id. `dir` of unit length.
     pub(crate) fn crossings(&self, origin: Vec3, dir: Vec3, range: [f64; 2], found: &mut Vec<(f64, u32)>) {
         let before = found.len();
-        self.collect(origin, dir, range, 0, found);
+        self.collect(&Line::new(origin, dir, range), 0, found);
         found[before..].sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     }
 
-    fn collect(&self, origin: Vec3, dir: Vec3, range: [f64; 2], first_id: u32, found: &mut Vec<(f64, u32)>) {
+    fn collect(&self, line: &Line, first_id: u32, found: &mut Vec<(f64, u32)>) {
         if self.nodes.is_empty() {
             return;
         }
-        let mut waiting = vec![Child::ROOT];
-        while let Some(child) = waiting.pop() {
+        let mut waiting = [Child::ROOT; WAITING];
+        let mut count = 1;
+        while count > 0 {
+            count -= 1;
+            let child = waiting[count];
             match child.kind() {
                 Kind::Node(number) => {
                     let node = &self.nodes[number as usize];
-                    let met = (0..WIDTH).filter(|&place| meets(node, place, origin, dir, range));
-                    waiting.extend(met.map(|place| node.child[place]));
+                    let mut met = line.meets(node);
+                    while met != 0 {
+                        waiting[count] = node.child[met.trailing_zeros() as usize];
+                        (count, met) = (count + 1, met & (met - 1));
+                    }
                 }
-                Kind::Block(_) => self.collect_in_leaf(child, origin, dir, range, first_id, found),
+                Kind::Block(_) => self.collect_in_leaf(child, line, first_id, found),
                 Kind::Leaf(_) | Kind::Nothing => {}
             }
         }
     }
 
-    fn collect_in_leaf(
-        &self,
-        leaf: Child,
-        origin: Vec3,
-        dir: Vec3,
-        range: [f64; 2],
-        first_id: u32,
-        found: &mut Vec<(f64, u32)>,
-    ) {
-        let block = leaf.place();
+    fn collect_in_leaf(&self, leaf: Child, line: &Line, first_id: u32, found: &mut Vec<(f64, u32)>) {
+        let (block, &Line { origin, dir, range, .. }) = (leaf.place(), line);
         let mut offer = |t: f64, meets: bool, id: f64| {
             if meets && t >= range[0] && t <= range[1] {
                 found.push((t, first_id + id as u32));
@@ -59,30 +104,18 @@ impl Bvh {
             offer(far, meets, id);
         }
         let numbers = &numbers[SPHERE * block.spheres..];
-        let k = axes(main_axis(dir));
-        let shear = Shear::new(dir.permuted(k));
         for i in 0..block.triangles {
             let number = |column: usize| numbers[column * block.triangles + i];
-            let corners = [0, 3, 6].map(|c| Vec3::new(number(c), number(c + 1), number(c + 2)).permuted(k));
-            let hit = triangle::intersect::<f64>(origin.permuted(k), &shear, corners);
+            let corners = [0, 3, 6].map(|c| Vec3::new(number(c), number(c + 1), number(c + 2)).permuted(line.axes));
+            let hit = triangle::intersect::<f64>(line.permuted, &line.shear, corners);
             offer(hit.t, hit.meets, number(TRIANGLE - 1));
         }
         let numbers = &numbers[TRIANGLE * block.triangles..][..block.instances];
         for &number in numbers {
             let instance = &self.instances[number as usize];
             let (origin, dir) = (instance.to_model.apply(origin), instance.to_model.turn(dir));
-            self.models[instance.model].collect(origin, dir, range, first_id + instance.first, found);
+            let line = Line::new(origin, dir, range);
+            self.models[instance.model].collect(&line, first_id + instance.first, found);
         }
     }
-}
-
-/// Does the line of a ray meet a box of a node within a range?
-fn meets(node: &Node, place: usize, origin: Vec3, dir: Vec3, [mut enter, mut leave]: [f64; 2]) -> bool {
-    for axis in 0..3 {
-        let (o, i) = (origin.component(axis), inverse(dir.component(axis)));
-        let side = usize::from(i < 0.0);
-        enter = ((f64::from(node.planes[plane(axis, side)][place]) - o) * i).max(enter);
-        leave = ((f64::from(node.planes[plane(axis, 1 - side)][place]) - o) * i).min(leave);
-    }
-    enter <= leave
 }

@@ -1,20 +1,20 @@
 //! From a name to a scene with its models: the one way in for scene files, drivers and built-in scenes.
 
+mod models;
+mod pictures;
+
 use crate::driver::{self, Dialect, Driver};
-use crate::model::{Mirror, MtlMaterial, MtlRule, ObjModel, find, parse_model, parse_mtl};
 use crate::nff::{self, Nff};
 use crate::report::{Report, Source};
 use crate::scene_file::{self, Syntax};
 use crate::{builtin, disk};
+use models::ModelReader;
 use serde::{Deserialize, Serialize};
-use snell::geometry::TriangleMesh;
 use snell::geometry::bvh::Quality;
-use snell::scene::{Material, Problem, Scene, Step, Warning, WarningCode};
+use snell::scene::{Problem, Scene, Step, Warning};
 use snell::world::World;
-use std::collections::HashMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 /// A scene with more problems than this has them counted, not listed.
 pub const MOST_PROBLEMS: usize = 15;
@@ -66,7 +66,7 @@ pub struct Loaded {
     pub dialect: Option<Dialect>,
     /// Folder that file names are relative to.
     pub folder: PathBuf,
-    /// All model and material files that were read.
+    /// All files with models, materials and pictures that were read.
     pub models: Vec<ModelFile>,
     /// For each mesh the file it comes from.
     pub mesh_paths: Vec<Option<PathBuf>>,
@@ -169,17 +169,7 @@ pub fn load_text(source: Source, kind: Kind, folder: &Path, options: &LoadOption
         Kind::Toml => changed(source.clone(), Syntax::Toml, &options.set)?,
         Kind::Json => changed(source.clone(), Syntax::Json, &options.set)?,
     };
-    let mut reader = ModelReader {
-        folder,
-        search: &options.search,
-        rule: rule(dialect),
-        objs: HashMap::new(),
-        mtls: HashMap::new(),
-        named: HashMap::new(),
-        numbers: HashMap::new(),
-        files: Vec::new(),
-        warnings,
-    };
+    let mut reader = ModelReader::new(folder, &options.search, dialect, warnings);
     let mut loaded = Loaded {
         scene,
         source,
@@ -197,6 +187,7 @@ pub fn load_text(source: Source, kind: Kind, folder: &Path, options: &LoadOption
     }
     loaded.models = reader.files;
     loaded.warnings = reader.warnings;
+    pictures::read(&mut loaded, &options.search)?;
     Ok(loaded)
 }
 
@@ -216,17 +207,6 @@ fn changed(source: Source, syntax: Syntax, set: &[String]) -> Result<(Scene, Pla
         syntax = Syntax::Toml;
     }
     Ok((scene_file::parse(&source, syntax)?, Places::Text(source, syntax)))
-}
-
-/// How the year of a driver reads the materials of polygons; scene files take what the file says.
-fn rule(dialect: Option<Dialect>) -> MtlRule {
-    let mirror = match dialect {
-        Some(Dialect::Course2018) => Mirror::One,
-        Some(Dialect::Lecture) => Mirror::KrOrOne,
-        Some(Dialect::Course2019 | Dialect::Course2020) => Mirror::KsIfIllum3,
-        None => Mirror::KrOrKsIfIllum3,
-    };
-    MtlRule { mirror, default_exponent: dialect.map_or(16.0, Dialect::default_exponent) }
 }
 
 impl Loaded {
@@ -272,158 +252,4 @@ impl Loaded {
             reports
         })
     }
-}
-
-/// Reads models and their materials, each file once.
-struct ModelReader<'a> {
-    folder: &'a Path,
-    search: &'a [PathBuf],
-    rule: MtlRule,
-    objs: HashMap<PathBuf, (Arc<TriangleMesh>, Arc<Libraries>)>,
-    mtls: HashMap<PathBuf, Vec<MtlMaterial>>,
-    /// Scene materials by model and slot, and the number that the next one of a name gets.
-    named: HashMap<(PathBuf, String), String>,
-    numbers: HashMap<String, usize>,
-    files: Vec<ModelFile>,
-    warnings: Vec<Report>,
-}
-
-impl ModelReader<'_> {
-    /// Gives a mesh its triangles and materials; returns where it was found.
-    fn read_mesh(&mut self, loaded: &mut Loaded, index: usize) -> Result<Option<PathBuf>, Report> {
-        let Some(file) = loaded.scene.meshes[index].file.clone() else { return Ok(None) };
-        let place = [Step::from("mesh"), Step::from(index), Step::from("file")];
-        let found = find(&file, self.folder, self.search).map_err(|r| loaded.places.put(r, &place))?;
-        self.warnings.extend(found.warning.map(|w| loaded.places.put(w, &place)));
-        let path = found.path;
-        if !self.objs.contains_key(&path) {
-            let located = |r: Report| if r.place.is_some() { r } else { loaded.places.put(r, &place) };
-            let bytes = self.read(&path)?;
-            let ObjModel { mesh, libraries, warnings } = parse_model(&path, &bytes).map_err(located)?;
-            self.warnings.extend(warnings);
-            let libraries = Arc::new(self.libraries(&libraries, &path)?);
-            self.objs.insert(path.clone(), (Arc::new(mesh), libraries));
-        }
-        let (mesh, libraries) = self.objs[&path].clone();
-        if loaded.scene.meshes[index].material.is_none() {
-            for slot in &mesh.slots {
-                if loaded.scene.meshes[index].materials.contains_key(slot) {
-                    continue;
-                }
-                let key = (path.clone(), slot.clone());
-                if !self.named.contains_key(&key) {
-                    let (name, material) = self.material(slot, &path, &libraries, &loaded.places, &place)?;
-                    let name = self.add_material(&mut loaded.scene, &path, &name, material);
-                    self.named.insert(key.clone(), name);
-                }
-                loaded.scene.meshes[index].materials.insert(slot.clone(), self.named[&key].clone());
-            }
-        }
-        loaded.scene.meshes[index].geometry = Some(mesh);
-        Ok(Some(path))
-    }
-
-    fn read(&mut self, path: &Path) -> Result<Vec<u8>, Report> {
-        let bytes = disk::read(path, disk::MAX_MODEL_BYTES)?;
-        self.files.push(ModelFile { path: path.to_owned(), sha256: disk::sha256([&bytes]) });
-        Ok(bytes)
-    }
-
-    /// The material that a model calls `slot`: from its libraries, else the only one of an `.mtl` of the same name, else
-    /// gray.
-    fn material(
-        &mut self,
-        slot: &str,
-        model: &Path,
-        libraries: &Libraries,
-        places: &Places,
-        place: &[Step],
-    ) -> Result<(String, Material), Report> {
-        if let Some(m) = libraries.materials.get(slot) {
-            return Ok((m.name.clone(), m.material(self.rule)));
-        }
-        let missing = &libraries.missing;
-        let same_name = model.with_extension("mtl").file_name().map(|n| n.to_string_lossy().into_owned());
-        let rule = self.rule;
-        if let Some(path) = self.find_library(&same_name.unwrap_or_default(), model)
-            && let [only] = self.read_library(&path)?
-        {
-            return Ok((only.name.clone(), only.material(rule)));
-        }
-        let why = match (slot, missing.is_empty()) {
-            (_, false) => format!("its material library {} is not there", missing.join(", ")),
-            ("", true) => "it names no material".to_owned(),
-            (slot, true) => format!("no library has its material `{slot}`"),
-        };
-        let shown = model.display();
-        let report = Report::warning(WarningCode::NoMaterial, format!("`{shown}` is drawn gray: {why}"));
-        self.warnings.push(places.put(report, place));
-        let gray = MtlMaterial::gray();
-        Ok((gray.name.clone(), gray.material(self.rule)))
-    }
-
-    /// The materials of the libraries that a model names.
-    fn libraries(&mut self, names: &[String], model: &Path) -> Result<Libraries, Report> {
-        let mut libraries = Libraries::default();
-        for name in names {
-            // One name with spaces, or several names.
-            let paths: Vec<PathBuf> = match self.find_library(name, model) {
-                Some(path) => vec![path],
-                None => name.split_whitespace().filter_map(|word| self.find_library(word, model)).collect(),
-            };
-            if paths.is_empty() {
-                libraries.missing.push(format!("`{name}`"));
-            }
-            for path in &paths {
-                for material in self.read_library(path)? {
-                    // Of two materials of one name the first counts.
-                    libraries.materials.entry(material.name.clone()).or_insert_with(|| material.clone());
-                }
-            }
-        }
-        Ok(libraries)
-    }
-
-    fn find_library(&mut self, name: &str, model: &Path) -> Option<PathBuf> {
-        let beside = model.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        let found = find(name, beside, self.search).or_else(|_| find(name, self.folder, &[])).ok()?;
-        if !self.mtls.contains_key(&found.path) {
-            self.warnings.extend(found.warning);
-        }
-        Some(found.path)
-    }
-
-    fn read_library(&mut self, path: &Path) -> Result<&[MtlMaterial], Report> {
-        if !self.mtls.contains_key(path) {
-            let (read, warnings) = parse_mtl(&disk::text(path, &self.read(path)?))?;
-            self.warnings.extend(warnings);
-            self.mtls.insert(path.to_owned(), read);
-        }
-        Ok(&self.mtls[path])
-    }
-
-    /// Adds a material under a name that tells where it is from.
-    fn add_material(&mut self, scene: &mut Scene, model: &Path, name: &str, material: Material) -> String {
-        let stem = model.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
-        // A name that needs no quotes in a scene file and no care in `--set`.
-        let plain: String = format!("{stem}_{name}")
-            .chars()
-            .map(|c| if c.is_ascii_alphanumeric() || c == '-' { c } else { '_' })
-            .collect();
-        loop {
-            let number = self.numbers.entry(plain.clone()).and_modify(|n| *n += 1).or_insert(1);
-            let candidate = if *number == 1 { plain.clone() } else { format!("{plain}_{number}") };
-            if !scene.materials.contains_key(&candidate) {
-                scene.materials.insert(candidate.clone(), material);
-                return candidate;
-            }
-        }
-    }
-}
-
-/// The materials that a model can name, and the libraries that are nowhere.
-#[derive(Debug, Default)]
-struct Libraries {
-    materials: HashMap<String, MtlMaterial>,
-    missing: Vec<String>,
 }

@@ -1,0 +1,329 @@
+//! From the meshes of a scene to triangles, surfaces and solids.
+
+use super::solid::MeshSolids;
+use super::surface::{FLAT, Surfaces};
+use super::{NO_SOLID, Object, Solid, World};
+use crate::geometry::mesh::MAX_SMOOTHED_VALENCE;
+use crate::geometry::solid::{Options, repair, structure};
+use crate::geometry::{Affine, Bounds, TriangleMesh, Vec3, triangle};
+use crate::scene::{Integrator, LARGEST_NUMBER, Mesh, OpenMesh, Problem, Step, Warning, WarningCode, whole_map};
+use indexmap::IndexMap;
+
+/// Triangles on their way into a tree.
+#[derive(Default)]
+pub(super) struct Triangles {
+    pub vertices: Vec<Vec3>,
+    pub faces: Vec<[u32; 3]>,
+}
+
+/// Which shape of a scene: the name of its list, and its number there.
+pub(super) type Which = (&'static str, usize);
+
+/// All that trees are to be built of.
+#[derive(Default)]
+pub(super) struct Parts {
+    pub triangles: Triangles,
+    pub models: Vec<Triangles>,
+    /// The meshes to be placed, when all ids before them are known: shape of the scene, name, model, map.
+    pub placed: Vec<(Which, String, usize, Affine)>,
+    /// The solids of each model.
+    pub solids: Vec<Vec<Solid>>,
+}
+
+/// The numbers of materials, by their names.
+pub(super) type MaterialIds<'a> = IndexMap<&'a str, u32>;
+
+/// What is on both sides of the transparent faces of a mesh.
+enum Sides {
+    /// Nothing goes through any of them.
+    None,
+    /// They enclose solids.
+    Solids(MeshSolids),
+    /// They are interfaces between two media, by the numbers of their solids: behind them and in front.
+    Interface([u32; 2]),
+}
+
+impl Sides {
+    /// The solids behind a face and in front of it.
+    fn of(&self, face: usize, first_solid: u32) -> [u32; 2] {
+        match self {
+            Self::None => [NO_SOLID; 2],
+            Self::Solids(solids) => match solids.solid_of[face] {
+                NO_SOLID => [NO_SOLID; 2],
+                solid => [first_solid + solid, NO_SOLID],
+            },
+            Self::Interface(sides) => *sides,
+        }
+    }
+}
+
+impl World {
+    pub(super) fn add_mesh(
+        &mut self,
+        which: Which,
+        mesh: &Mesh,
+        material_ids: &MaterialIds<'_>,
+        parts: &mut Parts,
+    ) -> Result<(), Problem> {
+        let place = |key: &str| vec![Step::from(which.0), Step::from(which.1), Step::from(key)];
+        let problem = |key: &str, message: String| Problem { place: place(key), message, help: None };
+        if mesh.inside.is_some() && !mesh.instances.is_empty() {
+            // Media are what they are everywhere, unlike the solids of a model, which are others in each place.
+            for steps in &mesh.instances {
+                let transform = [mesh.transform.as_slice(), steps].concat();
+                let one = Mesh { transform, instances: Vec::new(), ..mesh.clone() };
+                self.add_mesh(which, &one, material_ids, parts)?;
+            }
+            return Ok(());
+        }
+        let written;
+        let source = match (&mesh.geometry, &mesh.file) {
+            (Some(geometry), _) => geometry.as_ref(),
+            (None, Some(file)) => return Err(problem("file", format!("`{file}` has not been read"))),
+            (None, None) => {
+                written = written_out(mesh);
+                &written
+            }
+        };
+        if !source.face_uvs.is_empty() && source.face_uvs.len() != source.faces.len() {
+            let (uvs, faces) = (source.face_uvs.len(), source.faces.len());
+            return Err(problem("file", format!("{uvs} of {faces} faces have texture coordinates: all or none must")));
+        }
+        let placed = source.transformed(&whole_map(&mesh.transform));
+        if let Some(v) = placed.vertices.iter().find(|v| !v.is_finite() || v.length() > LARGEST_NUMBER) {
+            let message = format!("a vertex ends up at ({}, {}, {}), beyond 1e15", v.x, v.y, v.z);
+            return Err(problem("transform", message));
+        }
+        let slots = slot_materials(mesh, source, material_ids).map_err(|m| problem("materials", m))?;
+
+        let name = mesh.name.clone().or_else(|| mesh.file.clone());
+        let name = name.unwrap_or_else(|| format!("{} {}", which.0, which.1 + 1));
+        let material_of = |face: usize, mesh_of: &TriangleMesh| match mesh_of.face_slots.get(face) {
+            Some(&slot) if mesh.material.is_none() => slots[slot as usize],
+            _ => slots[0],
+        };
+        // Where a person would look for what is wrong with the mesh.
+        let main_key = if mesh.file.is_some() { "file" } else { "material" };
+        let refused = |(message, help)| Problem { place: place(main_key), message, help: Some(help) };
+        let (placed, sides) =
+            self.sides_of(&name, &place("open"), mesh, placed, &material_of, material_ids).map_err(refused)?;
+        let textured = (0..placed.faces.len()).any(|f| self.texture_of(material_of(f, &placed)).is_some());
+        if textured && placed.face_uvs.is_empty() && !placed.faces.is_empty() {
+            let help = "give it a material without texture, or a model file with texture coordinates".to_owned();
+            return Err(refused((format!("`{name}` has no texture coordinates for its texture"), help)));
+        }
+        let corner_normals = (mesh.smooth_angle > 0.0).then(|| placed.smooth_normals(mesh.smooth_angle));
+        let is_model = !mesh.instances.is_empty();
+        let (surfaces, triangles) = if is_model {
+            self.models.push(Surfaces::default());
+            parts.models.push(Triangles::default());
+            (self.models.last_mut(), parts.models.last_mut())
+        } else {
+            (Some(&mut self.surfaces), Some(&mut parts.triangles))
+        };
+        let (Some(surfaces), Some(triangles)) = (surfaces, triangles) else { return Ok(()) };
+        // Solids of a model are numbered from 0, and get their own in each place.
+        let first_solid = if is_model { 0 } else { self.solids.len() as u32 };
+        let (first, base) = (surfaces.material_of.len() as u32, triangles.vertices.len() as u32);
+        let mut without_area = 0usize;
+        let mut used = vec![false; self.materials.len()];
+        for (f, face) in placed.faces.iter().enumerate() {
+            if !triangle::normal(placed.corners(f)).is_finite() {
+                without_area += 1;
+                continue;
+            }
+            let material = material_of(f, &placed);
+            used[material as usize] = true;
+            triangles.faces.push(face.map(|v| v + base));
+            surfaces.material_of.push(material);
+            let [behind, front] = if self.materials[material as usize].is_transparent() {
+                sides.of(f, first_solid)
+            } else {
+                [NO_SOLID; 2]
+            };
+            let row = surfaces.material_of.len() - 1;
+            put_sparse(&mut surfaces.solid_of, row, behind, NO_SOLID);
+            put_sparse(&mut surfaces.front_of, row, front, NO_SOLID);
+            let normals = corner_normals.as_ref().map(|normals| normals[f]);
+            let at = normals.map_or(FLAT, |_| surfaces.corner_normals.len() as u32);
+            surfaces.corner_normals_of.push(at);
+            surfaces.corner_normals.extend(normals);
+            if textured {
+                put_sparse(&mut surfaces.corner_uvs_of, row, surfaces.corner_uvs.len() as u32, FLAT);
+                surfaces.corner_uvs.push(placed.corner_uvs(f).unwrap_or_default());
+            }
+        }
+        triangles.vertices.extend(&placed.vertices);
+        let solids = if let Sides::Solids(solids) = sides { solids.solids } else { Vec::new() };
+        if is_model {
+            parts.solids.push(solids);
+            let model = self.models.len() - 1;
+            let maps = mesh.instances.iter().map(|steps| whole_map(steps));
+            parts.placed.extend(maps.map(|map| (which, name.clone(), model, map)));
+        } else {
+            self.solids.extend(solids);
+            let count = self.surfaces.material_of.len() as u32 - first;
+            self.objects.push(Object { name: name.clone(), first, count });
+        }
+        self.warn_about(&name, &place(main_key), &placed, mesh, without_area, &used);
+        Ok(())
+    }
+
+    /// The mesh, with its holes filled if that was asked for, and what is on both sides of its faces if light goes through
+    /// them. Fails with what is wrong and what to do.
+    fn sides_of(
+        &mut self,
+        name: &str,
+        place: &[Step],
+        mesh: &Mesh,
+        placed: TriangleMesh,
+        material_of: &impl Fn(usize, &TriangleMesh) -> u32,
+        material_ids: &MaterialIds<'_>,
+    ) -> Result<(TriangleMesh, Sides), (String, String)> {
+        let materials = (0..placed.faces.len()).map(|f| material_of(f, &placed));
+        let mut media = materials.filter(|&m| self.refracts(m)).map(|m| self.medium_of(m));
+        let Some(medium) = media.next() else { return Ok((placed, Sides::None)) };
+        if mesh.inside.is_some() {
+            drop(media);
+            return self.interface(name, mesh, placed, material_ids);
+        }
+        if media.any(|other| other != medium) {
+            let message = format!("`{name}` has faces of different glasses, so that it is not clear what is inside");
+            let help = "give all its transparent materials the same eta, absorption and priority";
+            return Err((message, help.to_owned()));
+        }
+        drop(media);
+        let why_not = match MeshSolids::of(&placed, medium) {
+            Ok(solids) => return Ok((placed, Sides::Solids(solids))),
+            Err(why_not) => why_not,
+        };
+        let message = format!("`{name}` is transparent but not a solid: {why_not}");
+        match mesh.open {
+            None => {
+                let help = "give its material a `thickness` for thin panes, or the mesh open = \"fill\" or open = \
+                            \"opaque\", or the media on both sides, `inside` and `outside`; `snell check` shows what \
+                            is wrong with a model and can repair it";
+                Err((message, help.to_owned()))
+            }
+            Some(OpenMesh::Opaque) => {
+                let message = format!("{message}; it is opaque, as `open` says");
+                self.warnings.push(Warning { code: WarningCode::MeshNotRefracted, place: place.to_vec(), message });
+                Ok((placed, Sides::None))
+            }
+            Some(OpenMesh::Fill) => {
+                let (filled, _) = repair(&placed, &Options::default());
+                match MeshSolids::of(&filled, medium) {
+                    Ok(solids) => Ok((filled, Sides::Solids(solids))),
+                    Err(why_not) => Err((
+                        format!("`{name}` is transparent, and with its holes filled still not a solid: {why_not}"),
+                        "`snell check` shows what is wrong with it; or add open = \"opaque\"".to_owned(),
+                    )),
+                }
+            }
+        }
+    }
+
+    /// Faces that are interfaces between two media.
+    fn interface(
+        &mut self,
+        name: &str,
+        mesh: &Mesh,
+        placed: TriangleMesh,
+        material_ids: &MaterialIds<'_>,
+    ) -> Result<(TriangleMesh, Sides), (String, String)> {
+        let turned = structure(&placed).misoriented.count;
+        if turned > 0 {
+            let message =
+                format!("`{name}` has two sides, but at {turned} of its edges neighbouring faces look opposite ways");
+            return Err((message, "`snell check --repair` turns them to one side".to_owned()));
+        }
+        let bounds = Bounds::of(placed.vertices.iter().copied());
+        let mut side = |name: Option<&String>| {
+            let material = name.and_then(|name| material_ids.get(name.as_str()));
+            material.map_or(NO_SOLID, |&material| self.medium_between_faces(material, bounds))
+        };
+        let sides = [side(mesh.inside.as_ref()), side(mesh.outside.as_ref())];
+        Ok((placed, Sides::Interface(sides)))
+    }
+
+    /// The solid of all that interfaces say to be filled with a material.
+    fn medium_between_faces(&mut self, material: u32, bounds: Bounds) -> u32 {
+        let known = self.solids.iter().position(|solid| solid.between_faces_of == Some(material));
+        let number = known.unwrap_or(self.solids.len());
+        if known.is_none() {
+            let medium = self.medium_of(material);
+            let bounds = Bounds::EMPTY;
+            self.solids.push(Solid { medium, inward: false, touches: true, between_faces_of: Some(material), bounds });
+        }
+        self.solids[number].bounds = self.solids[number].bounds.union(bounds);
+        number as u32
+    }
+
+    fn warn_about(
+        &mut self,
+        name: &str,
+        place: &[Step],
+        placed: &TriangleMesh,
+        mesh: &Mesh,
+        without_area: usize,
+        used: &[bool],
+    ) {
+        let mut warn = |code, message| self.warnings.push(Warning { code, place: place.to_vec(), message });
+        if without_area > 0 {
+            let message = format!("`{name}`: {without_area} faces without area are left out");
+            warn(WarningCode::DegenerateFaces, message);
+        }
+        if mesh.smooth_angle > 0.0 {
+            let mut valence = vec![0usize; placed.vertices.len()];
+            placed.faces.iter().flatten().for_each(|&v| valence[v as usize] += 1);
+            if valence.iter().any(|&n| n > MAX_SMOOTHED_VALENCE) {
+                let message = format!("`{name}`: vertices shared by more than {MAX_SMOOTHED_VALENCE} faces stay flat");
+                warn(WarningCode::NotSmoothed, message);
+            }
+        }
+        let transparent = self.materials.iter().zip(used).any(|(m, &used)| used && m.is_transparent());
+        let refracts_spheres = matches!(self.render.integrator, Integrator::Lecture | Integrator::Course2020);
+        if transparent && refracts_spheres {
+            let message = format!(
+                "`{name}` has a transparent material, but this integrator refracts only in spheres: \
+                 its transparent share is not drawn"
+            );
+            warn(WarningCode::MeshNotRefracted, message);
+        }
+    }
+}
+
+/// Sets a value in a list that ends with the last value that is not the usual one.
+fn put_sparse(list: &mut Vec<u32>, at: usize, value: u32, usual: u32) {
+    if value != usual {
+        list.resize(at, usual);
+        list.push(value);
+    }
+}
+
+/// The triangles that are written in the scene itself.
+fn written_out(mesh: &Mesh) -> TriangleMesh {
+    let vertices = mesh.vertices.iter().map(|&v| v.into()).collect();
+    TriangleMesh { vertices, faces: mesh.faces.clone(), ..TriangleMesh::default() }
+}
+
+/// The material of each slot of a model; at least one.
+fn slot_materials(mesh: &Mesh, source: &TriangleMesh, ids: &MaterialIds<'_>) -> Result<Vec<u32>, String> {
+    let id = |name: &str| ids.get(name).copied().ok_or_else(|| format!("no material is called `{name}`"));
+    if let Some(name) = &mesh.material {
+        return Ok(vec![id(name)?]);
+    }
+    if source.faces.is_empty() {
+        return Ok(vec![0]);
+    }
+    if source.slots.is_empty() || source.face_slots.len() != source.faces.len() {
+        return Err("the model names no materials: give the mesh one with `material`".to_owned());
+    }
+    let named = |slot: &String| match mesh.materials.get(slot) {
+        Some(name) => id(name),
+        None => {
+            Err(format!("no material for `{slot}` of the model: give the mesh a `material` or a `materials` entry"))
+        }
+    };
+    source.slots.iter().map(named).collect()
+}

@@ -1,0 +1,81 @@
+//! The tree over everything, with the trees of the models and the places where they stand.
+
+use super::mesh::{Parts, Triangles, Which};
+use super::surface::Placement;
+use super::{NO_PRIMITIVE, Object, World};
+use crate::geometry::Bounds;
+use crate::geometry::bvh::{Bvh, Instance, MARGIN, Quality, Shapes};
+use crate::scene::{LARGEST_NUMBER, Problem, Step};
+
+impl World {
+    pub(super) fn build_tree(&mut self, parts: &Parts, quality: Quality, threads: usize) -> Result<(), Problem> {
+        let problem = |(kind, index): Which, message: String| {
+            let place = vec![Step::from(kind), Step::from(index), Step::from("instances")];
+            Problem { place, message, help: None }
+        };
+        let Triangles { vertices, faces } = &parts.triangles;
+        let shapes = Shapes { spheres: &self.spheres, vertices, faces, instances: &[] };
+        if shapes.count() + parts.placed.len() >= 1 << 31 {
+            let message = "more than 2 billion spheres and triangles".to_owned();
+            return Err(Problem { place: vec![Step::from("mesh")], message, help: None });
+        }
+        // Rays start on surfaces or on the image plane; no ray origin is farther from a primitive than this.
+        let corners = Bounds::of(self.camera.outermost());
+        let mut everything = (0..shapes.count()).map(|i| shapes.bounds(i)).fold(corners, Bounds::union);
+        let mut boxes = Vec::with_capacity(parts.placed.len());
+        for (which, name, model, map) in &parts.placed {
+            let Triangles { vertices, faces } = &parts.models[*model];
+            // Vertices of no face may lie anywhere, and must not make the boxes of others larger.
+            let vertices = if faces.is_empty() { &[] } else { vertices.as_slice() };
+            let bounds = Bounds::of(vertices.iter().map(|&v| map.apply(v)));
+            if !(bounds.farthest() <= LARGEST_NUMBER || faces.is_empty()) {
+                return Err(problem(*which, format!("an instance of `{name}` reaches beyond 1e15")));
+            }
+            everything = everything.union(bounds);
+            boxes.push(bounds);
+        }
+        let (reach, farthest) = (everything.diagonal(), everything.farthest());
+        self.clearance = MARGIN * (reach + farthest);
+        self.behind = 0.5 * MARGIN * reach;
+        // In the space of a model rays come from everywhere that any of its instances sees.
+        let mut seen: Vec<Bounds> = parts.models.iter().map(|m| Bounds::of(m.vertices.iter().copied())).collect();
+        let mut instances = Vec::with_capacity(parts.placed.len());
+        let mut first = self.surfaces.material_of.len();
+        for ((which, name, model, map), bounds) in parts.placed.iter().zip(boxes) {
+            let instance = Instance::new(*model, map, first as u32, bounds, reach, farthest);
+            let flat = || problem(*which, format!("an instance of `{name}` is scaled by 0"));
+            let instance = instance.ok_or_else(flat)?;
+            seen[*model] = seen[*model].union(Bounds::of(everything.corners().map(|c| instance.to_model.apply(c))));
+            let count = self.models[*model].material_of.len();
+            self.objects.push(Object { name: name.clone(), first: first as u32, count: count as u32 });
+            let placement = Placement {
+                model: *model,
+                first: first as u32,
+                first_solid: self.solids.len() as u32,
+                to_world: *map,
+                to_model: instance.to_model,
+            };
+            self.solids.extend(parts.solids[*model].iter().map(|solid| solid.placed(map)));
+            if count > 0 {
+                self.placements.push(placement);
+                instances.push(instance);
+            }
+            first += count;
+            if first >= NO_PRIMITIVE as usize {
+                return Err(problem(*which, "more than 4 billion triangles in all places together".to_owned()));
+            }
+        }
+        let models = parts.models.iter().zip(seen).map(|(Triangles { vertices, faces }, seen)| {
+            let shapes = Shapes { vertices, faces, ..Shapes::default() };
+            Bvh::build(&shapes, vec![], seen.diagonal(), quality, threads)
+        });
+        let models = models.collect();
+        let touching = self.touching(&shapes, &instances);
+        let shapes = Shapes { instances: &instances, ..shapes };
+        self.tree = Bvh::build(&shapes, models, reach, quality, threads);
+        for (solid, touches) in self.solids.iter_mut().zip(touching) {
+            solid.touches = touches;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,24 @@
+#!/usr/bin/env bash
+# Renders the pictures of the documentation anew: the models of light side by side, and the gallery.
+source "$(dirname "$0")/lib.sh"
+
+# 240 pixels high, in the scene's shape.
+picture_size() {
+    sed -n 's/^size = \[\([0-9]*\), \([0-9]*\)\]$/\1 \2/p' "$1" | head -1 | awk '{ printf "%dx240", int($1 * 240 / $2 + 0.5) }'
+}
+
+need_rust
+cargo build --locked --quiet --profile ci --package snell-cli
+mkdir -p docs/pictures/models docs/pictures/gallery
+for scene in scenes/models/*.toml; do
+    name=$(basename "$scene" .toml)
+    shadows=()
+    [ "$name" != shadow ] || shadows=(--shadows tinted)
+    target/ci/snell render "$scene" --integrator lecture --quiet -o "docs/pictures/models/$name-lecture.png"
+    target/ci/snell render "$scene" --integrator whitted "${shadows[@]}" --quiet -o "docs/pictures/models/$name-whitted.png"
+done
+for scene in scenes/gallery/*.toml; do
+    name=$(basename "$scene" .toml)
+    printf '%s\n' "$name"
+    target/ci/snell render "$scene" --size "$(picture_size "$scene")" --spp 4 --quiet -o "docs/pictures/gallery/$name.png"
+done
