@@ -65,8 +65,18 @@ need_python() {
     fi
 }
 
-# Node runs the WASM tests; 18 is the oldest that is still in a distribution and has all they use.
+# Chromium shows pages to the tests. Debian's is installed where that needs no questions.
+need_chromium() {
+    [ -x /usr/bin/chromium ] && return
+    if [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null; then
+        printf 'Installing chromium ...\n' >&2
+        { apt-get update -qq && apt-get install -y -qq chromium; } >/dev/null 2>&1 || true
+    fi
+    [ -x /usr/bin/chromium ] || missing 'Chromium' 'sudo apt-get install chromium'
+}
+
+# Node runs the WASM tests and builds the viewer; 20 is the oldest that its tools run on.
 need_node() {
-    node --eval 'process.exit(parseInt(process.versions.node) < 18 ? 1 : 0)' 2>/dev/null ||
-        missing 'Node 18 or newer' 'sudo apt-get install nodejs'
+    node --eval 'process.exit(parseInt(process.versions.node) < 20 ? 1 : 0)' 2>/dev/null ||
+        missing 'Node 20 or newer' 'sudo apt-get install nodejs npm'
 }

@@ -11,7 +11,7 @@ stage() {
     times+=("$(printf '%5d s  %s' $((SECONDS - start)) "$name")")
 }
 
-need_tools() { need_rust wasm32-unknown-unknown aarch64-unknown-linux-gnu && need_python && need_node; }
+need_tools() { need_rust wasm32-unknown-unknown aarch64-unknown-linux-gnu && need_python && need_node && need_chromium; }
 oracle() { SNELL=$PWD/target/ci/snell .venv/bin/python -m pytest -q tests; }
 documentation() { RUSTDOCFLAGS='-D warnings' cargo doc --locked --quiet --workspace --no-deps --profile ci; }
 # An intrinsic that is a function of its own was called from code without the instructions of its width: each operation
@@ -40,6 +40,14 @@ same_bits_in_wasm() {
     printf '%d films and statistics, the same bits\n' "$(wc -l <target/same-bits-wasm.txt)"
 }
 
+viewer() {
+    # The packages are fetched again when the list of them has changed.
+    if ! cmp -s viewer/package-lock.json viewer/node_modules/.fetched; then
+        (cd viewer && npm ci --silent --no-audit --no-fund) && cp viewer/package-lock.json viewer/node_modules/.fetched
+    fi
+    (cd viewer && SNELL=$PWD/../target/ci/snell npm test --silent)
+}
+
 stage 'tools' need_tools
 stage 'format' cargo fmt --all --check
 stage 'lints' cargo clippy --locked --quiet --workspace --all-targets --profile ci -- -D warnings
@@ -47,6 +55,7 @@ stage 'build' cargo build --locked --quiet --workspace --profile ci
 stage 'kernels are inlined' kernels_are_inlined
 stage 'Rust tests' cargo test --locked --quiet --workspace --profile ci
 stage 'Python tests: the slow oracle, the schema' oracle
+stage 'the viewer, in Chromium' viewer
 stage 'documentation' documentation
 stage 'fuzz targets compile' cargo check --locked --quiet --manifest-path fuzz/Cargo.toml --target-dir target/fuzz
 stage 'the library for ARM' cargo check --locked --quiet --package snell --target aarch64-unknown-linux-gnu --profile ci

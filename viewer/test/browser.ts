@@ -33,6 +33,11 @@ export interface OpenPage {
 export async function open(browser: Browser, name: string, data: ViewerData, options: BrowserContextOptions = {}, before = ''): Promise<OpenPage> {
   const path = `${OUT}${name}.html`;
   writeFileSync(path, pageOf(data, before));
+  return openFile(browser, path, options);
+}
+
+/** A page that is there already. */
+export async function openFile(browser: Browser, path: string, options: BrowserContextOptions = {}): Promise<OpenPage> {
   const url = pathToFileURL(path).href;
   const page = await browser.newPage({ viewport: { width: 1280, height: 800 }, reducedMotion: 'reduce', offline: true, ...options });
   const trouble: string[] = [];

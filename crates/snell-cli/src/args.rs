@@ -33,6 +33,7 @@ pub struct Arguments {
 #[derive(Debug, Subcommand)]
 pub enum Command {
     Render(Box<RenderArgs>),
+    Explain(Box<ExplainArgs>),
     Info(InfoArgs),
     Scenes(ScenesArgs),
     Convert(ConvertArgs),
@@ -109,6 +110,13 @@ pub struct RenderArgs {
     #[arg(long, value_name = "KIND", value_parser = named::<Shadows>, help_heading = "Light")]
     pub shadows: Option<Shadows>,
 
+    /// One layer for each of the N strongest ways of light, and one for the rest: an EXR whose layers add up to the picture
+    #[arg(long, value_name = "N", conflicts_with_all = ["from", "only"], value_parser = clap::value_parser!(u32).range(1..=1000), help_heading = "Light")]
+    pub paths: Option<u32>,
+    /// Only the light of one way, like "glass(refract) green"
+    #[arg(long, value_name = "WAY", conflicts_with = "from", help_heading = "Light")]
+    pub only: Option<String>,
+
     #[command(flatten)]
     pub reading: ReadingArgs,
 
@@ -132,6 +140,67 @@ pub struct RenderArgs {
     /// How to show progress on stderr
     #[arg(long, value_name = "KIND", value_enum, default_value_t = ProgressKind::Auto, help_heading = "Work")]
     pub progress: ProgressKind,
+}
+
+/// Why a pixel has the colour it has: the tree of its rays, whose contributions add up to it, bit for bit
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  snell explain lecture/default 256,256
+  snell explain lecture/default 190,300 --html why.html      the tree and its rays in 3D, in one file
+  snell explain lecture/default 256,256 --svg why.svg        angles at every surface on the way
+  snell explain lecture/default 256,400 --light left         why is this light missing here?
+  snell explain lecture/default 256,256 --without glass      the same pixel without an object
+  snell explain lecture/default 256,256 --set material.glass.eta=1.05
+  snell explain lecture/default --find green --mask green.png")]
+pub struct ExplainArgs {
+    /// A scene file, a driver file, or the name of a built-in scene
+    pub scene: String,
+    /// Column and row of the pixel, from the top left
+    #[arg(value_name = "X,Y", value_parser = pixel, required_unless_present = "find")]
+    pub pixel: Option<[u32; 2]>,
+    /// Print the tree as JSON
+    #[arg(long, conflicts_with_all = ["html", "svg"], help_heading = "Form")]
+    pub json: bool,
+    /// Write a page that shows the tree and its rays in 3D; it needs nothing else and opens from disk
+    #[arg(long, value_name = "FILE", conflicts_with = "svg", help_heading = "Form")]
+    pub html: Option<PathBuf>,
+    /// Write a drawing of the angles at each surface on the strongest way
+    #[arg(long, value_name = "FILE", help_heading = "Form")]
+    pub svg: Option<PathBuf>,
+    /// Show no more bounces than this
+    #[arg(long, value_name = "N", help_heading = "Form")]
+    pub depth: Option<u32>,
+    /// Show so many of the strongest branches
+    #[arg(long, value_name = "N", help_heading = "Form")]
+    pub top: Option<usize>,
+    /// Why is this light on, or not on, what the pixel shows?
+    #[arg(long, value_name = "NAME", help_heading = "Questions")]
+    pub light: Option<String>,
+    /// The same pixel without an object
+    #[arg(long, value_name = "OBJECT", help_heading = "Questions")]
+    pub without: Option<String>,
+    /// Which pixels show this object, and by which ways?
+    #[arg(long, value_name = "OBJECT", conflicts_with_all = ["pixel", "json", "html", "svg", "light", "without"], help_heading = "Questions")]
+    pub find: Option<String>,
+    /// With --find: a picture of where it is seen, and how much
+    #[arg(long, value_name = "FILE", requires = "find", help_heading = "Questions")]
+    pub mask: Option<PathBuf>,
+    /// Width and height of the picture
+    #[arg(long, value_name = "WxH", value_parser = size, help_heading = "Scene")]
+    pub size: Option<[u32; 2]>,
+    /// Samples per pixel
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SPP)), help_heading = "Scene")]
+    pub spp: Option<u32>,
+    /// The model of light
+    #[arg(long, value_name = "NAME", value_parser = named::<Integrator>, help_heading = "Scene")]
+    pub integrator: Option<Integrator>,
+    /// What blocks a light
+    #[arg(long, value_name = "KIND", value_parser = named::<Shadows>, help_heading = "Scene")]
+    pub shadows: Option<Shadows>,
+    /// Changes by `--set` are what would be: the pixel is shown before and after
+    #[command(flatten)]
+    pub reading: ReadingArgs,
 }
 
 /// How scene files are read.
@@ -322,6 +391,15 @@ fn quality(text: &str) -> Result<Quality, String> {
         "good" => Ok(Quality::Good),
         "best" => Ok(Quality::Best),
         _ => Err("expected fast, good or best".to_owned()),
+    }
+}
+
+/// `256,300`.
+fn pixel(text: &str) -> Result<[u32; 2], String> {
+    let numbers: Vec<Option<u32>> = text.split(',').map(|word| word.trim().parse().ok()).collect();
+    match numbers.as_slice() {
+        [Some(x), Some(y)] => Ok([*x, *y]),
+        _ => Err("expected column and row, like 256,300".to_owned()),
     }
 }
 

@@ -7,7 +7,9 @@ mod check;
 mod convert;
 mod diff;
 mod excerpt;
+mod explain;
 mod info;
+mod paths;
 mod progress;
 mod recipe;
 mod render;
@@ -24,6 +26,7 @@ fn main() -> ExitCode {
     let arguments = Arguments::parse();
     let result = match arguments.command {
         Command::Render(args) => render::run(&args),
+        Command::Explain(args) => explain::run(&args),
         Command::Info(args) => info::run(&args),
         Command::Scenes(args) => scenes::run(&args),
         Command::Convert(args) => convert::run(&args),

@@ -50,7 +50,9 @@ impl Reporter {
                 bar.set_length(progress.total_pixels);
                 bar.set_position(progress.pixels);
                 let seconds = bar.elapsed().as_secs_f64();
-                bar.set_message(format!("{} rays/s", short(progress.rays as f64 / seconds.max(1e-9))));
+                if progress.rays > 0 {
+                    bar.set_message(format!("{} rays/s", short(progress.rays as f64 / seconds.max(1e-9))));
+                }
             }
             Self::Json { started, last } => {
                 let Ok(mut last) = last.lock() else { return };

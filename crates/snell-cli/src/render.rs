@@ -1,6 +1,7 @@
 //! `snell render`.
 
 use crate::args::{ProgressKind, RenderArgs};
+use crate::paths;
 use crate::progress::{Phase, Reporter, short};
 use crate::recipe::Recipe;
 use crate::say::{self, FAILED, Failure, INTERRUPTED, OrFail, Outcome, SCENE, USAGE};
@@ -165,6 +166,9 @@ fn one(mut recipe: Recipe, mut loaded: Loaded, args: &RenderArgs, output: &Path)
         return Err(Failure::new(USAGE, report));
     }
 
+    if args.paths.is_some() || args.only.is_some() {
+        return paths::run(&world, &loaded, args, output);
+    }
     let reporter = Reporter::new(args.progress, args.quiet, &recipe.name);
     let started = Instant::now();
     let progress = |p| {

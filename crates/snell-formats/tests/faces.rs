@@ -59,7 +59,10 @@ fn a_thin_face_is_a_slab_of_two() {
         assert!((exit - start).cross(thin_dir).length() < 1e-12);
         // What goes up and what goes down in the end. Sixty reflections inside leave less than 0.3^60 of anything.
         let share = |tree: &snell::trace::RayTree, up: bool| {
-            let leaving = tree.nodes.iter().filter(|n| n.depth > 0 && n.hit.is_none() && (n.dir.z > 0.0) == up);
+            let leaving = tree
+                .nodes
+                .iter()
+                .filter(|n| n.depth > 0 && n.hit.is_none() && n.ended.is_none() && (n.dir.z > 0.0) == up);
             leaving.fold(Rgb::black(), |sum, n| sum + n.throughput)
         };
         for up in [true, false] {

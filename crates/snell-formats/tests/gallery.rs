@@ -20,7 +20,7 @@ fn shown(name: &str, size: [u32; 2], pixel: [u32; 2]) -> (Vec<String>, RayTree) 
     let mut nodes: Vec<_> = tree.nodes.iter().filter(|n| n.contribution.mean() > 0.0).collect();
     nodes.sort_by(|a, b| b.contribution.mean().total_cmp(&a.contribution.mean()));
     let name = |n: &&Node| {
-        n.hit.and_then(|(primitive, ..)| world.object_of(primitive)).map_or("sky".to_owned(), |o| o.name.clone())
+        n.hit.as_ref().and_then(|hit| world.object_of(hit.primitive)).map_or("sky".to_owned(), |o| o.name.clone())
     };
     (nodes.iter().map(name).collect(), tree)
 }
@@ -94,7 +94,7 @@ impl Look {
     }
 
     fn name(&self, node: &Node) -> &str {
-        let object = node.hit.and_then(|(primitive, ..)| self.world.object_of(primitive));
+        let object = node.hit.as_ref().and_then(|hit| self.world.object_of(hit.primitive));
         object.map_or("", |object| object.name.as_str())
     }
 

@@ -179,7 +179,7 @@ fn the_recorded_tree_of_every_pixel_adds_up_to_the_film() {
                         Some(parent) => assert_eq!(tree.nodes[parent].depth + 1, node.depth),
                     }
                 }
-                rays += tree.nodes.len() as u64;
+                rays += tree.nodes.iter().filter(|node| node.ended.is_none()).count() as u64;
             }
         }
         let counts = rendered.statistics.rays;

@@ -30,6 +30,7 @@
 //! # }
 //! ```
 
+pub mod explain;
 pub mod film;
 pub mod geometry;
 pub mod lanes;

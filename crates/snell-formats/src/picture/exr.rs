@@ -39,6 +39,30 @@ pub(super) fn write(out: &mut dyn Out, film: &Film, recipe: Option<&str>) -> std
     }
 }
 
+/// One EXR layer for each.
+pub(super) fn write_layers(
+    out: &mut dyn Out,
+    size: [u32; 2],
+    picture: &[Rgb],
+    layers: &[(String, Vec<Rgb>)],
+) -> std::io::Result<()> {
+    let size = Vec2(size[0] as usize, size[1] as usize);
+    let encoding = Encoding { compression: Compression::ZIP16, ..Encoding::FAST_LOSSLESS };
+    let layer = |name: &str, pixels: &[Rgb]| {
+        let channel = |value: fn(&Rgb) -> f64| FlatSamples::F32(pixels.iter().map(|c| value(c) as f32).collect());
+        let channels = [("R", channel(|c| c.r)), ("G", channel(|c| c.g)), ("B", channel(|c| c.b))];
+        let channels = channels.into_iter().map(|(name, samples)| AnyChannel::new(name, samples)).collect();
+        // Arrows are no characters of the format; other bytes go through as they are.
+        let name = Text::from_bytes_unchecked(name.replace('→', "->").bytes().collect::<attribute::TextBytes>());
+        Layer::new(size, LayerAttributes::named(name), encoding, AnyChannels::sort(channels))
+    };
+    let named = layers.iter().map(|(name, pixels)| (name.as_str(), pixels.as_slice()));
+    let layer_data: Layers<AnyChannels<FlatSamples>> =
+        [("picture", picture)].into_iter().chain(named).map(|(name, pixels)| layer(name, pixels)).collect();
+    let image = Image { attributes: ImageAttributes::new(IntegerBounds::from_dimensions(size)), layer_data };
+    image.write().non_parallel().to_buffered(out).map_err(|e| std::io::Error::other(e.to_string()))
+}
+
 fn image<C>(display: IntegerBounds, layer: Layer<C>) -> Image<Layer<C>> {
     Image { attributes: ImageAttributes::new(display), layer_data: layer }
 }

@@ -69,6 +69,15 @@ pub fn write(path: &Path, format: Format, film: &Film, encoding: Encoding, recip
     })
 }
 
+/// Writes layers of a picture by their names into an EXR file, first the picture itself; each has the channels R, G and B. All
+/// have `size[0]·size[1]` pixels, row by row.
+///
+/// # Errors
+/// When writing fails; what was there before stays.
+pub fn write_layers(path: &Path, size: [u32; 2], picture: &[Rgb], layers: &[(String, Vec<Rgb>)]) -> Result<(), Report> {
+    disk::write(path, |out| exr::write_layers(out, size, picture, layers))
+}
+
 /// A picture that was read, with pixels of some kind.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture<P = Rgb> {

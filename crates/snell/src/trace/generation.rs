@@ -8,12 +8,13 @@ use super::media::Media;
 use super::queue::{Generation, RayKind, RayQueue};
 use super::shading::{self, ShadowRays};
 use super::statistics::Statistics;
+use super::tree::Ended;
 use super::whitted;
 use crate::film::{Crop, Rgb};
 use crate::geometry::bvh::Packet;
 use crate::lanes::{Kernel, Lanes};
 use crate::scene::Integrator;
-use crate::world::World;
+use crate::world::{LightSource, World};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// A generation with more rays than this is split by pixels. It bounds the memory of the queues.
@@ -24,9 +25,15 @@ const GENERATION_BUDGET: usize = 1 << 16;
 /// counted, twice as many, or one for each band of light.
 const RAYS_PER_PIXEL: u32 = 1 << 18;
 
-/// Sees every generation when it is done, with its rays, hits and contributions.
+/// Sees every generation: first what light does at its hits, then its rays, hits and contributions, then what is not followed.
 pub(crate) trait Observer {
-    fn generation(&mut self, rays: &impl Generation, hits: &Hits);
+    /// The local colours are those of the ambient light.
+    fn ambient(&mut self, hits: &Hits, world: &World);
+    /// What one light adds to them.
+    fn light(&mut self, world: &World, light: &LightSource, hits: &Hits, shadow: &ShadowRays);
+    fn generation(&mut self, rays: &impl Generation, hits: &Hits, media: &Media<'_>);
+    /// A child of the last generation is not followed.
+    fn ended(&mut self, children: &RayQueue, row: usize, why: Ended, media: &Media<'_>);
     /// A sample of each pixel is done; what each of them lost.
     fn sample(&mut self, lost: &[Rgb]);
 }
@@ -34,7 +41,13 @@ pub(crate) trait Observer {
 /// Looks at nothing: plain rendering.
 impl Observer for () {
     #[inline(always)]
-    fn generation(&mut self, _rays: &impl Generation, _hits: &Hits) {}
+    fn ambient(&mut self, _hits: &Hits, _world: &World) {}
+    #[inline(always)]
+    fn light(&mut self, _world: &World, _light: &LightSource, _hits: &Hits, _shadow: &ShadowRays) {}
+    #[inline(always)]
+    fn generation(&mut self, _rays: &impl Generation, _hits: &Hits, _media: &Media<'_>) {}
+    #[inline(always)]
+    fn ended(&mut self, _children: &RayQueue, _row: usize, _why: Ended, _media: &Media<'_>) {}
     #[inline(always)]
     fn sample(&mut self, _lost: &[Rgb]) {}
 }
@@ -246,8 +259,13 @@ impl<'a, L: Lanes, O: Observer> Tracer<'a, L, O> {
             found.renumber(|pixel| self.number_of(pixel as usize));
             self.statistics.merge(&found);
         }
-        let shadow_rays =
-            shading::local_colors::<L>(&mut self.media, &mut self.hits, &mut self.shadow, &mut self.packet);
+        let shadow_rays = shading::local_colors::<L>(
+            &mut self.media,
+            &mut self.hits,
+            &mut self.shadow,
+            &mut self.packet,
+            &mut self.observer,
+        );
         self.statistics.rays.shadow += shadow_rays as u64;
         let mut children = self.empty_queue();
         self.refracted.clear();
@@ -274,7 +292,7 @@ impl<'a, L: Lanes, O: Observer> Tracer<'a, L, O> {
             let pixel = &mut self.radiance[self.hits.pixel(row)];
             *pixel = *pixel + self.hits.contribution(row);
         }
-        self.observer.generation(rays, &self.hits);
+        self.observer.generation(rays, &self.hits, &self.media);
         self.limit(depth, &mut children);
         children
     }
@@ -295,7 +313,14 @@ impl<'a, L: Lanes, O: Observer> Tracer<'a, L, O> {
             let Rgb { r, g, b } = children.loads::<f64>(row).weight.throughput();
             let throughput = Rgb::new(r.abs(), g.abs(), b.abs());
             let too_little = throughput.r.max(throughput.g).max(throughput.b) < least;
-            if too_deep || too_little || planned[pixel] >= RAYS_PER_PIXEL {
+            let too_many = planned.get(pixel).is_some_and(|&rays| rays >= RAYS_PER_PIXEL);
+            if too_deep || too_little || too_many {
+                let why = match (too_deep, too_little) {
+                    (true, _) => Ended::Depth,
+                    (false, true) => Ended::Throughput,
+                    (false, false) => Ended::Rays,
+                };
+                self.observer.ended(children, row, why, &self.media);
                 self.lost[pixel] = self.lost[pixel] + Rgb::new(r, g, b);
                 self.lost_sizes[pixel] += throughput.mean();
                 self.statistics.lost.rays += 1;

@@ -20,6 +20,7 @@ mod lecture;
 mod media;
 mod pane;
 mod queue;
+mod recorder;
 mod sampler;
 mod shading;
 mod statistics;
@@ -28,6 +29,6 @@ mod whitted;
 
 pub(crate) use generation::Tracer;
 pub use queue::RayKind;
+pub(crate) use recorder::Recorder;
 pub use statistics::{LostLight, Overlap, Overlaps, RayCounts, Statistics, StrayExits};
-pub(crate) use tree::Recorder;
-pub use tree::{Node, PixelTrace, RayTree};
+pub use tree::{Ended, Hit, Lit, Node, PixelTrace, RayTree};

@@ -1,5 +1,6 @@
 //! The local colour of the hits: ambient light, then light by light, with shadows.
 
+use super::generation::Observer;
 use super::hits::{Batch, Hits};
 use super::lecture::T_MIN;
 use super::media::{Media, OUTSIDE, Way};
@@ -32,6 +33,16 @@ pub(crate) struct ShadowRays {
 }
 
 impl ShadowRays {
+    /// Does the light reach this hit?
+    pub fn is_lit(&self, row: usize) -> bool {
+        self.lit[row / 64] >> (row % 64) & 1 != 0
+    }
+
+    /// With tinted shadows what of the light reaches this hit.
+    pub fn left(&self, row: usize) -> Option<Rgb> {
+        (self.light.len() > 0).then(|| [0, 1, 2].map(|channel| self.light.at(channel, row)).into())
+    }
+
     /// Decides which hits a light reaches: those that face it, and, with shadows, see it. Returns how many rays that took.
     #[inline(always)]
     fn aim<L: Lanes>(&mut self, media: &mut Media<'_>, hits: &Hits, light: &LightSource, packet: &mut Packet) -> usize {
@@ -49,12 +60,7 @@ impl ShadowRays {
         for start in (0..hits.len()).step_by(L::WIDTH) {
             let batch = hits.batch::<L>(world, start);
             let (point, source) = (batch.point(), batch.primitive());
-            let (wi, distance) = if light.at_infinity {
-                (light.at.splat(), L::splat(f64::INFINITY))
-            } else {
-                let to_light = light.at.splat() - point;
-                (to_light.unit(), to_light.length())
-            };
+            let (wi, distance) = light.seen_from(point);
             let shows = if real_optics { whitted::has_local_color(&batch) } else { batch.active };
             let mut lit = shows & batch.normal().dot(wi).gt(L::splat(0.0));
             if real_optics {
@@ -174,43 +180,54 @@ pub(crate) fn local_colors<L: Lanes>(
     hits: &mut Hits,
     shadow: &mut ShadowRays,
     packet: &mut Packet,
+    observer: &mut impl Observer,
 ) -> usize {
     let world = media.world();
-    let tinted = world.render.shadows == Shadows::Tinted;
     let ambient = world.ambient.splat::<L>();
     for start in (0..hits.len()).step_by(L::WIDTH) {
         let light = ambient * hits.batch::<L>(world, start).patterned(|m| m.ka);
         hits.set_local_color(start, light);
     }
+    observer.ambient(hits, world);
     let mut rays = 0;
     for light in &world.lights {
         rays += shadow.aim::<L>(media, hits, light, packet);
+        observer.light(world, light, hits, shadow);
         for start in (0..hits.len()).step_by(L::WIDTH) {
             let lit = L::Mask::from_bits((shadow.lit[start / 64] >> (start % 64)) as u32);
             if !lit.any() {
                 continue;
             }
             let batch = hits.batch::<L>(world, start);
-            let surface = Surface {
-                kd: batch.patterned(|m| m.kd),
-                ks: batch.material_color(|m| m.ks),
-                spow: batch.material(|m| m.spow),
-            };
-            let mut intensity = light.color.splat::<L>();
-            if tinted {
-                let [r, g, b] = shadow.light.group(0, start);
-                intensity = intensity * Rgb::new(r, g, b);
-            }
-            let [x, y, z] = shadow.wi.group(0, start);
-            let wi = Vec3::new(x, y, z);
-            if let Some(spot) = &light.spot {
-                let share = spot.share(wi);
-                intensity = intensity * Rgb::new(share, share, share);
-            }
             let before = batch.local_color();
-            let [diffuse, highlight] = phong::light(lit, batch.normal(), batch.wo(), wi, intensity, &surface);
+            let [diffuse, highlight] = light_on(&batch, light, shadow, start);
             hits.set_local_color(start, Rgb::select(lit, before + diffuse + highlight, before));
         }
     }
     rays
+}
+
+/// What a light adds to the hits of a batch that it reaches: diffuse, and highlight.
+#[inline(always)]
+pub(super) fn light_on<L: Lanes>(
+    batch: &Batch<'_, L>,
+    light: &LightSource,
+    shadow: &ShadowRays,
+    start: usize,
+) -> [Rgb<L>; 2] {
+    let lit = L::Mask::from_bits((shadow.lit[start / 64] >> (start % 64)) as u32);
+    let surface =
+        Surface { kd: batch.patterned(|m| m.kd), ks: batch.material_color(|m| m.ks), spow: batch.material(|m| m.spow) };
+    let mut intensity = light.color.splat::<L>();
+    if shadow.light.len() > 0 {
+        let [r, g, b] = shadow.light.group(0, start);
+        intensity = intensity * Rgb::new(r, g, b);
+    }
+    let [x, y, z] = shadow.wi.group(0, start);
+    let wi = Vec3::new(x, y, z);
+    if let Some(spot) = &light.spot {
+        let share = spot.share(wi);
+        intensity = intensity * Rgb::new(share, share, share);
+    }
+    phong::light(lit, batch.normal(), batch.wo(), wi, intensity, &surface)
 }

@@ -1,12 +1,9 @@
-//! The ray tree of one pixel, recorded by the engine that renders: there is no second tracer.
+//! The ray tree of one pixel: what the engine's [`Recorder`](super::recorder::Recorder) writes down while it renders.
 
-use super::generation::{Observer, mean};
-use super::hits::Hits;
-use super::media::WHITE;
-use super::queue::{Generation, RayKind};
+use super::generation::mean;
+use super::queue::RayKind;
 use crate::film::Rgb;
 use crate::geometry::Vec3;
-use crate::lanes::index;
 
 /// One ray, and what it added.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,35 +16,105 @@ pub struct Node {
     pub parent: Option<usize>,
     /// Where it starts.
     pub origin: Vec3,
-    /// Where it goes.
+    /// Where it goes, of unit length.
     pub dir: Vec3,
     /// Which band of light, counted from violet; `None` for all of it.
     pub band: Option<u32>,
-    /// What it can add to the pixel for each unit of radiance.
+    /// A primitive of the solid whose medium it travels in; `None` for the space between the objects.
+    pub medium: Option<u32>,
+    /// The index of refraction there.
+    pub eta: f64,
+    /// What it can add to the pixel for each unit of radiance, where it starts.
     pub throughput: Rgb,
-    /// What it hit: primitive, distance, and the unit normal that faces the ray; `None` also for the background.
-    pub hit: Option<(u32, f64, Vec3)>,
+    /// What it hit; `None` also for the background.
+    pub hit: Option<Hit>,
     /// What that surface, or the background, adds to the pixel.
     pub contribution: Rgb,
+    /// Why it was not followed; `None` for one that was.
+    pub ended: Option<Ended>,
     /// Is it added? Not where there is nothing to be seen.
-    adds: bool,
+    pub(super) adds: bool,
 }
 
-/// All rays of one pixel, in the order in which they are traced and added.
+/// Why a ray was not followed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ended {
+    /// `max_depth` bounces were behind it.
+    Depth,
+    /// It carried less than `min_throughput`.
+    Throughput,
+    /// The pixel had got all of its rays.
+    Rays,
+}
+
+/// Where a ray met something.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Hit {
+    /// What.
+    pub primitive: u32,
+    /// The number of its material.
+    pub material: u32,
+    /// How far from the ray's origin.
+    pub t: f64,
+    /// Where.
+    pub point: Vec3,
+    /// Of unit length, facing the ray.
+    pub normal: Vec3,
+    /// The indices of refraction on the side of the ray and behind; the same where nothing is behind.
+    pub eta: [f64; 2],
+    /// Is it the outer side of the surface, which shows its own colour?
+    pub outer: bool,
+    /// What the ray carries where it arrives: with real optics less than where it starts, if the medium absorbs.
+    pub throughput: Rgb,
+    /// The surface's own colour, before anything weighs it.
+    pub local: Rgb,
+    /// The part of it that is light from everywhere.
+    pub ambient: Rgb,
+    /// The light that it sends out by itself, before anything weighs it.
+    pub emission: Rgb,
+    /// What each light does there, in the order of the scene.
+    pub lights: Vec<Lit>,
+}
+
+/// What a light does at a point of a surface.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Lit {
+    /// Towards the light, of unit length, and how far it is.
+    pub wi: Vec3,
+    /// Infinite for a light at infinity.
+    pub distance: f64,
+    /// Does the surface face it?
+    pub facing: bool,
+    /// The share of the light that arrives, in the shadow of what is between and within its cone.
+    pub transmittance: Rgb,
+    /// What lies between, from the surface on: primitives and distances. The last one blocks the light if nothing arrives.
+    pub between: Vec<(u32, f64)>,
+    /// What it adds to the surface's own colour.
+    pub diffuse: Rgb,
+    /// The same for its highlight.
+    pub highlight: Rgb,
+}
+
+/// All rays of one sample of a pixel, in the order in which they are traced and added.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RayTree {
-    /// The rays, generation by generation.
+    /// The rays, generation by generation; those that were not followed after the generation that sent them.
     pub nodes: Vec<Node>,
     /// The throughput of the rays that were not followed: too deep, too many, or carrying too little.
     pub lost: Rgb,
 }
 
 impl RayTree {
-    /// The contributions added up in the engine's order: the pixel, bit for bit.
+    /// The contributions added up in the engine's order: the sample, bit for bit.
     pub fn sum(&self) -> Rgb {
+        self.sum_of(|_| true)
+    }
+
+    /// The same of some of the nodes, by their numbers.
+    pub fn sum_of(&self, chosen: impl Fn(usize) -> bool) -> Rgb {
         // What adds nothing is not added: 0 and -0 are not the same bits.
-        let contributions = self.nodes.iter().filter(|n| n.adds).map(|n| n.contribution);
-        contributions.fold(Rgb::black(), |sum, c| sum + c)
+        let all = self.nodes.iter().enumerate().filter(|(number, node)| node.adds && chosen(*number));
+        all.fold(Rgb::black(), |sum, (_, node)| sum + node.contribution)
     }
 }
 
@@ -63,56 +130,16 @@ pub struct PixelTrace {
 impl PixelTrace {
     /// The trees added up in the engine's order: the pixel, bit for bit.
     pub fn sum(&self) -> Rgb {
-        match self.samples.as_slice() {
-            [only] => only.sum(),
-            all => mean(all.iter().fold(Rgb::black(), |sum, tree| sum + tree.sum()), all.len() as u32),
-        }
-    }
-}
-
-/// Writes down every generation of a pixel.
-#[derive(Debug, Default)]
-pub(crate) struct Recorder {
-    /// The trees of the samples that are done.
-    pub samples: Vec<RayTree>,
-    tree: RayTree,
-    depth: u32,
-    /// Where the previous generation starts.
-    parents: usize,
-}
-
-impl Observer for Recorder {
-    fn generation(&mut self, rays: &impl Generation, hits: &Hits) {
-        let start = self.tree.nodes.len();
-        for row in 0..rays.len() {
-            let ((origin, dir), load) = (rays.ways::<f64>(row), rays.loads::<f64>(row));
-            self.tree.nodes.push(Node {
-                kind: rays.kind(row),
-                depth: self.depth,
-                parent: (self.depth > 0).then(|| self.parents + index(load.parent)),
-                origin,
-                dir,
-                band: Some(index(load.band) as u32).filter(|&band| band != WHITE),
-                throughput: load.weight.throughput(),
-                hit: None,
-                contribution: Rgb::black(),
-                adds: false,
-            });
-        }
-        for hit in 0..hits.len() {
-            let node = &mut self.tree.nodes[start + hits.ray(hit)];
-            if !hits.is_sky(hit) {
-                node.hit = Some((hits.primitive(hit), hits.t(hit), hits.normal(hit)));
-            }
-            (node.contribution, node.adds) = (hits.contribution(hit), true);
-        }
-        self.parents = start;
-        self.depth += 1;
+        self.sum_of(|_, _| true)
     }
 
-    fn sample(&mut self, lost: &[Rgb]) {
-        let nodes = std::mem::take(&mut self.tree.nodes);
-        self.samples.push(RayTree { nodes, lost: lost.first().copied().unwrap_or_default() });
-        (self.depth, self.parents) = (0, 0);
+    /// The same of some of the nodes, by the numbers of their samples and their own.
+    pub fn sum_of(&self, chosen: impl Fn(usize, usize) -> bool) -> Rgb {
+        let of = |(sample, tree): (usize, &RayTree)| tree.sum_of(|node| chosen(sample, node));
+        let mut sums = self.samples.iter().enumerate().map(of);
+        match self.samples.len() {
+            1 => sums.next().unwrap_or_default(),
+            count => mean(sums.fold(Rgb::black(), |sum, sample| sum + sample), count as u32),
+        }
     }
 }

@@ -41,6 +41,19 @@ impl LightSource {
     }
 }
 
+impl LightSource {
+    /// The directions towards it from some points, and how far it is.
+    #[inline(always)]
+    pub fn seen_from<L: Lanes>(&self, point: Vec3<L>) -> (Vec3<L>, L) {
+        if self.at_infinity {
+            (self.at.splat(), L::splat(f64::INFINITY))
+        } else {
+            let to_light = self.at.splat() - point;
+            (to_light.unit(), to_light.length())
+        }
+    }
+}
+
 impl Spot {
     /// The share of the light that goes against `wi`, which points towards it: 1 in the middle, 0 outside, and smooth between.
     #[inline(always)]

@@ -136,7 +136,7 @@ impl World {
     }
 
     /// The corners of a triangle, in the space of the world.
-    pub(super) fn corners(&self, primitive: usize) -> [Vec3; 3] {
+    pub(crate) fn corners(&self, primitive: usize) -> [Vec3; 3] {
         match self.placement(primitive) {
             None => self.tree.corners(primitive),
             Some((placement, id)) => {

@@ -28,6 +28,14 @@ impl Pattern {
         Some(Self { colors, repeat: texture.repeat })
     }
 
+    /// The largest value of each channel.
+    pub fn largest(&self) -> Rgb {
+        match &self.colors {
+            Colors::Checker(colors) => brightest(colors.iter().copied()),
+            Colors::Image(image) => brightest_texel(image),
+        }
+    }
+
     fn color(&self, [u, v]: [f64; 2]) -> Rgb {
         let (u, v) = (u * self.repeat[0], v * self.repeat[1]);
         match &self.colors {
@@ -35,6 +43,14 @@ impl Pattern {
             Colors::Image(image) => image.bilinear(u, v),
         }
     }
+}
+
+fn brightest(colors: impl Iterator<Item = Rgb>) -> Rgb {
+    colors.fold(Rgb::gray(0.0), |a, b| Rgb::new(a.r.max(b.r), a.g.max(b.g), a.b.max(b.b)))
+}
+
+fn brightest_texel(image: &Image) -> Rgb {
+    brightest(image.pixels().iter().map(|texel| Rgb::from(texel.map(f64::from))))
 }
 
 /// Light from where nothing is.
@@ -59,6 +75,15 @@ impl Background {
         // The direction is turned back, instead of the picture.
         let turn = Affine::rotation(Vec3::new(0.0, 1.0, 0.0), -sky.rotate)?;
         Some(Self::Image { image: sky.pixels.clone()?, turn, brightness: sky.brightness })
+    }
+
+    /// The largest value of each channel.
+    pub fn largest(&self) -> Rgb {
+        match self {
+            Self::Color(color) => *color,
+            Self::Gradient { horizon, zenith, nadir } => brightest([*horizon, *zenith, *nadir].into_iter()),
+            Self::Image { image, brightness, .. } => brightest_texel(image) * *brightness,
+        }
     }
 
     /// Is there none?

@@ -1,0 +1,93 @@
+//! `--set` and `--without`: the same pixel, before and after, branch by branch.
+
+use super::text::{head, mean, numbers, swatch};
+use super::{pixel, settings};
+use crate::args::ExplainArgs;
+use crate::say::{self, Failure, OrFail, Outcome, SCENE, USAGE};
+use snell::explain::{Explanation, Names, Path, by_path};
+use snell::film::Rgb;
+use snell::render::trace_pixel;
+use snell::scene::Scene;
+use snell::world::World;
+use snell_formats::load::Loaded;
+use snell_formats::{LoadOptions, Report, load};
+use std::fmt::Write;
+
+pub fn run(before: &Explanation, world: &World, args: &ExplainArgs, [x, y]: [u32; 2]) -> Outcome {
+    let mut loaded = load(&args.scene, &LoadOptions::from(&args.reading)).or_fail(SCENE)?;
+    settings(&mut loaded, args);
+    if let Some(object) = &args.without {
+        remove(&mut loaded.scene, world, object)?;
+    }
+    let changed = loaded.world().or_fail(SCENE)?;
+    let after = pixel(&changed, &loaded, args, x, y)?;
+    let original = {
+        let mut loaded =
+            load(&args.scene, &LoadOptions { set: Vec::new(), ..LoadOptions::from(&args.reading) }).or_fail(SCENE)?;
+        settings(&mut loaded, args);
+        loaded
+    };
+    let mut text = head(before);
+    let without = args.without.as_ref().map(|object| format!("without {object}"));
+    let changes: Vec<String> = args.reading.set.iter().map(|change| format!("with {change}")).chain(without).collect();
+    let _ = writeln!(
+        text,
+        "\n{}:\n{}{}\n{}\n",
+        changes.join(", "),
+        swatch(after.color, after.transfer),
+        numbers(after.color),
+        after.sentence
+    );
+    text += &table(&paths(world, &original, x, y), &paths(&changed, &loaded, x, y));
+    say::print(&text)
+}
+
+/// Takes an object out of a scene.
+fn remove(scene: &mut Scene, world: &World, object: &str) -> Result<(), Failure> {
+    let mut known: Vec<&str> = world.objects.iter().map(|o| o.name.as_str()).collect();
+    known.dedup();
+    if !known.contains(&object) {
+        let help = format!("objects: {}", known.into_iter().take(30).collect::<Vec<_>>().join(", "));
+        return Err(Failure::new(USAGE, Report::error(format!("no object is called `{object}`")).help(help)));
+    }
+    // Objects without a name are called by their place in the list.
+    let is = |name: Option<&String>, kind: &str, i: usize| {
+        name.map_or_else(|| format!("{kind} {}", i + 1) == object, |name| name == object)
+    };
+    let mut i = 0;
+    scene.spheres.retain(|s| (!is(s.name.as_ref(), "sphere", i), i += 1).0);
+    i = 0;
+    scene.meshes.retain(|m| (!is(m.name.as_ref().or(m.file.as_ref()), "mesh", i), i += 1).0);
+    i = 0;
+    scene.planes.retain(|p| (!is(p.name.as_ref(), "plane", i), i += 1).0);
+    i = 0;
+    scene.boxes.retain(|b| (!is(b.name.as_ref(), "box", i), i += 1).0);
+    i = 0;
+    scene.lathes.retain(|l| (!is(l.name.as_ref(), "lathe", i), i += 1).0);
+    Ok(())
+}
+
+fn paths(world: &World, loaded: &Loaded, x: u32, y: u32) -> Vec<(Path, Rgb)> {
+    let names = Names { world, scene: &loaded.scene };
+    trace_pixel(world, x, y).map_or(Vec::new(), |trace| by_path(&names, &trace))
+}
+
+/// All paths of both, those that changed most first.
+fn table(before: &[(Path, Rgb)], after: &[(Path, Rgb)]) -> String {
+    let of = |paths: &[(Path, Rgb)], path: &Path| paths.iter().find(|(p, _)| p == path).map_or(0.0, |(_, c)| c.mean());
+    let mut rows: Vec<(&Path, f64, f64)> =
+        before.iter().map(|(path, color)| (path, color.mean(), of(after, path))).collect();
+    let new = after.iter().filter(|(path, _)| !before.iter().any(|(p, _)| p == path));
+    rows.extend(new.map(|(path, color)| (path, 0.0, color.mean())));
+    rows.sort_by(|a, b| (b.1 - b.2).abs().total_cmp(&(a.1 - a.2).abs()));
+    let mut text = format!("{:>9} {:>9}  path\n", "before", "after");
+    for (path, before, after) in rows {
+        let _ = writeln!(text, "{before:9.5} {after:9.5}  {path}");
+    }
+    let _ = writeln!(text, "{:9.5} {:9.5}  together", total(before), total(after));
+    text
+}
+
+fn total(paths: &[(Path, Rgb)]) -> f64 {
+    mean(paths.iter().fold(Rgb::gray(0.0), |sum, (_, color)| sum + *color).to_array())
+}

@@ -1,0 +1,52 @@
+//! `--light`: why a light is, or is not, on what the pixel shows.
+
+use super::text::{head, mean, numbers};
+use crate::say::{Failure, USAGE};
+use snell::explain::Explanation;
+use snell_formats::Report;
+use std::fmt::Write;
+
+/// What the light does at every surface of the pixel that shows its own colour.
+pub fn text(explanation: &Explanation, name: &str) -> Result<String, Failure> {
+    let lights = explanation.samples.iter().flat_map(|s| &s.nodes).filter_map(|n| n.local.as_ref());
+    let mut known: Vec<&str> = lights.flat_map(|local| local.lights.iter().map(|light| light.name.as_str())).collect();
+    known.sort_unstable();
+    known.dedup();
+    if !known.contains(&name) {
+        let list = if known.is_empty() {
+            "no surface of this pixel asks for lights".to_owned()
+        } else {
+            format!("lights: {}", known.join(", "))
+        };
+        return Err(Failure::new(USAGE, Report::error(format!("no light is called `{name}`")).help(list)));
+    }
+    let mut text = head(explanation);
+    text.push('\n');
+    for sample in &explanation.samples {
+        for node in &sample.nodes {
+            let (Some(hit), Some(local)) = (&node.hit, &node.local) else { continue };
+            let Some(light) = local.lights.iter().find(|light| light.name == name) else { continue };
+            let [x, y, z] = hit.point;
+            let _ = write!(text, "on {} at ({x:.4}, {y:.4}, {z:.4}): ", hit.object);
+            let through = light.through.join(", ");
+            let _ = match (&light.blocked_by, light.block_point) {
+                (Some(blocker), Some([x, y, z])) => {
+                    let under = if through.is_empty() { String::new() } else { format!(", behind {through}") };
+                    writeln!(text, "blocked by {blocker} at ({x:.4}, {y:.4}, {z:.4}){under}")
+                }
+                _ if !light.facing => writeln!(text, "the surface faces away from it"),
+                _ if mean(light.transmittance) == 0.0 => writeln!(text, "its cone does not reach there"),
+                _ => {
+                    let by = if through.is_empty() { String::new() } else { format!(" through {through}") };
+                    let [d, h] = [light.diffuse, light.highlight].map(numbers);
+                    writeln!(
+                        text,
+                        "{:.1} % of it arrive{by}: diffuse {d}, highlight {h}",
+                        100.0 * mean(light.transmittance)
+                    )
+                }
+            };
+        }
+    }
+    Ok(text)
+}

@@ -1,0 +1,211 @@
+//! An explanation as a tree in the terminal.
+
+use crate::args::ExplainArgs;
+use snell::explain::{Ending, ExplainedNode, ExplainedSample, Explanation, NodeKind, percent};
+use snell::film::transfer::{Encoding, Rounding, Transfer};
+use std::fmt::Write;
+use std::io::IsTerminal;
+
+/// Branches that are shown, if not asked otherwise.
+const TOP: usize = 16;
+
+/// May stdout be coloured? `NO_COLOR` says no (no-color.org).
+fn colored() -> bool {
+    std::io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|v| v.is_empty())
+}
+
+/// Two blanks in a colour, or nothing.
+pub(super) fn swatch(color: [f64; 3], transfer: Transfer) -> String {
+    if !colored() {
+        return String::new();
+    }
+    let [r, g, b] = bytes(color, transfer);
+    format!("\x1b[48;2;{r};{g};{b}m  \x1b[0m ")
+}
+
+pub(super) fn bytes(color: [f64; 3], transfer: Transfer) -> [u16; 3] {
+    color.map(|c| Encoding { transfer, rounding: Rounding::Round }.encode(c, 255))
+}
+
+pub(super) fn numbers(color: [f64; 3]) -> String {
+    let [r, g, b] = color.map(|c| format!("{c:.4}"));
+    format!("({r}, {g}, {b})")
+}
+
+pub(super) fn mean(color: [f64; 3]) -> f64 {
+    color.iter().sum::<f64>() / 3.0
+}
+
+/// Title, sentence, and the tree of each sample.
+pub fn text(explanation: &Explanation, args: &ExplainArgs) -> String {
+    let mut text = head(explanation);
+    let total = mean(explanation.color) * f64::from(explanation.spp);
+    for (number, sample) in explanation.samples.iter().enumerate() {
+        if explanation.samples.len() > 1 {
+            let _ = writeln!(text, "\nsample {} of {}  {}", number + 1, explanation.spp, numbers(sample.color));
+        } else {
+            text.push('\n');
+        }
+        let tree = Tree::new(sample, total, args, explanation.transfer);
+        tree.node(&mut text, 0, "", "");
+        let hidden = sample.nodes.iter().filter(|node| node.ended != Some(Ending::Missed)).count();
+        let shown = tree.shown.iter().filter(|shown| **shown).count();
+        if hidden > shown {
+            let _ = writeln!(text, "  … {} more rays; --top N and --depth N show more", hidden - shown);
+        }
+    }
+    text
+}
+
+/// Which pixel, its colour, and the sentence.
+pub(super) fn head(explanation: &Explanation) -> String {
+    let Explanation { scene, integrator, pixel: [x, y], size: [width, height], color, transfer, .. } = explanation;
+    let [r, g, b] = bytes(*color, *transfer);
+    let name = format!("{integrator:?}").to_lowercase();
+    format!(
+        "{scene}, pixel {x},{y} of {width} x {height}, {name}\n{}{} #{r:02x}{g:02x}{b:02x}\n{}\n",
+        swatch(*color, *transfer),
+        numbers(*color),
+        explanation.sentence
+    )
+}
+
+/// A sample's tree, of which only the strongest branches are shown.
+struct Tree<'a> {
+    sample: &'a ExplainedSample,
+    total: f64,
+    depth: u32,
+    transfer: Transfer,
+    children: Vec<Vec<usize>>,
+    shown: Vec<bool>,
+}
+
+impl<'a> Tree<'a> {
+    fn new(sample: &'a ExplainedSample, total: f64, args: &ExplainArgs, transfer: Transfer) -> Self {
+        let mut children = vec![Vec::new(); sample.nodes.len()];
+        for node in &sample.nodes {
+            if let Some(parent) = node.parent {
+                children[parent].push(node.id);
+            }
+        }
+        let weight = |id: usize| {
+            mean(sample.nodes[id].subtotal.map(f64::abs)) + mean(sample.nodes[id].bound.unwrap_or_default())
+        };
+        // The strongest, with all their parents: a subtotal is in those of its parents.
+        let mut order: Vec<usize> = (0..sample.nodes.len()).collect();
+        order.sort_by(|&a, &b| weight(b).total_cmp(&weight(a)).then(a.cmp(&b)));
+        let mut shown = vec![false; sample.nodes.len()];
+        for &id in order.iter().take(args.top.unwrap_or(TOP)) {
+            let mut at = Some(id);
+            while let Some(id) = at.filter(|&id| !std::mem::replace(&mut shown[id], true)) {
+                at = sample.nodes[id].parent;
+            }
+        }
+        Self { sample, total, depth: args.depth.unwrap_or(u32::MAX), transfer, children, shown }
+    }
+
+    fn share(&self, color: [f64; 3]) -> String {
+        if self.total > 0.0 { percent(mean(color) / self.total) } else { "0 %".to_owned() }
+    }
+
+    fn node(&self, text: &mut String, id: usize, before: &str, below: &str) {
+        let Some(node) = self.sample.nodes.get(id) else { return };
+        let _ = writeln!(
+            text,
+            "{before}{:>6}  {}{}",
+            self.share(node.subtotal),
+            swatch(node.subtotal, self.transfer),
+            line(node)
+        );
+        if let Some(local) = &node.local
+            && mean(node.contribution) != 0.0
+        {
+            let bar = if self.below(id).is_empty() { "        " } else { "│       " };
+            let _ = writeln!(text, "{below}{bar}{} its own colour: {}", self.share(node.contribution), lights(local));
+        }
+        let below_it = self.below(id);
+        for (place, &child) in below_it.iter().enumerate() {
+            let last = place + 1 == below_it.len();
+            let (fork, bar) = if last { ("└─", "  ") } else { ("├─", "│ ") };
+            self.node(text, child, &format!("{below}{fork}"), &format!("{below}{bar}"));
+        }
+    }
+
+    /// The children that are shown, the strongest first.
+    fn below(&self, id: usize) -> Vec<usize> {
+        let mut below: Vec<usize> = self.children[id].iter().copied().filter(|&c| self.shown[c]).collect();
+        below.retain(|&child| self.sample.nodes[child].depth <= self.depth);
+        let weight = |id: usize| mean(self.sample.nodes[id].subtotal);
+        below.sort_by(|&a, &b| weight(b).total_cmp(&weight(a)).then(a.cmp(&b)));
+        below
+    }
+}
+
+/// What lights a surface.
+fn lights(local: &snell::explain::LocalLight) -> String {
+    let mut parts = Vec::new();
+    if mean(local.emission) != 0.0 {
+        parts.push("it shines".to_owned());
+    }
+    if mean(local.ambient) != 0.0 {
+        parts.push("ambient".to_owned());
+    }
+    for light in &local.lights {
+        let name = &light.name;
+        if !light.facing {
+            continue;
+        }
+        if let Some(blocker) = &light.blocked_by {
+            parts.push(format!("{name} is behind {blocker}"));
+        } else if mean(light.transmittance) == 0.0 {
+            parts.push(format!("{name} shines elsewhere"));
+        } else {
+            let through =
+                if light.through.is_empty() { String::new() } else { format!(" through {}", light.through.join(", ")) };
+            let shine = if mean(light.highlight) > mean(light.diffuse) { " (highlight)" } else { "" };
+            parts.push(format!("{name}{through}{shine}"));
+        }
+    }
+    if parts.is_empty() { "no light".to_owned() } else { parts.join(", ") }
+}
+
+/// One ray in a line.
+fn line(node: &ExplainedNode) -> String {
+    let kind = match node.kind {
+        NodeKind::Camera => "camera ray",
+        NodeKind::Mirror => "mirrored",
+        NodeKind::Refracted => "refracted",
+        NodeKind::Inside => "inside",
+    };
+    let mut text = kind.to_owned();
+    if node.kind == NodeKind::Inside {
+        let _ = write!(text, " {}", node.medium);
+    }
+    if let Some(nm) = node.band_nm {
+        let _ = write!(text, " at {nm:.0} nm");
+    }
+    match &node.hit {
+        Some(hit) => {
+            let _ = write!(text, " → {} after {:.4}, at {:.1}°", hit.object, hit.t, hit.angle_in);
+            if hit.total_reflection {
+                text += ", total reflection";
+            } else if let Some(out) = hit.angle_out {
+                let _ = write!(text, " → {out:.1}°");
+            }
+        }
+        None if node.ended == Some(Ending::Missed) && mean(node.contribution) != 0.0 => text += " → background",
+        None => {}
+    }
+    match (node.ended, node.bound) {
+        (Some(Ending::Missed), _) if mean(node.contribution) == 0.0 => text += " → nothing",
+        (Some(Ending::Depth), Some(bound)) => ended(&mut text, "as deep as allowed", bound),
+        (Some(Ending::Threshold), Some(bound)) => ended(&mut text, "it carries too little", bound),
+        (Some(Ending::Rays), Some(bound)) => ended(&mut text, "the pixel had all its rays", bound),
+        _ => {}
+    }
+    text
+}
+
+fn ended(text: &mut String, why: &str, bound: [f64; 3]) {
+    let _ = write!(text, ", not followed: {why}; it could have added {:.5} at most", mean(bound));
+}

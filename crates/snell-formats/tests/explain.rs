@@ -1,0 +1,223 @@
+//! Explanations: what they say adds up, to the bit, and what they leave open is bounded.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
+use snell::explain::{Ending, Explanation, Names, Path, explain, find, layers};
+use snell::film::Rgb;
+use snell::render::{Options, render, trace_pixel};
+use snell::scene::{Integrator, Scene, Shadows};
+use snell::world::World;
+use snell_formats::builtin::SCENES;
+use snell_formats::{LoadOptions, load};
+use std::collections::BTreeMap;
+
+/// All built-in scenes of a group at this size, in both models of light.
+fn scenes(group: &str, size: u32) -> Vec<(String, Scene)> {
+    let mut all = Vec::new();
+    for (name, _) in SCENES.iter().filter(|(name, _)| name.starts_with(group)) {
+        for integrator in [Integrator::Lecture, Integrator::Whitted] {
+            let mut scene = load(name, &LoadOptions::default()).unwrap().scene;
+            scene.render.size = [size, size];
+            scene.render.integrator = integrator;
+            // Some rays carry less in one model than in the other; what matters here is that all kinds are there.
+            (scene.render.spp, scene.render.bands) = (scene.render.spp.min(2), scene.render.bands.min(4));
+            if integrator == Integrator::Lecture && scene.render.shadows == Shadows::Tinted {
+                scene.render.shadows = Shadows::Opaque;
+            }
+            all.push((format!("{name}, {integrator:?}"), scene));
+        }
+    }
+    all
+}
+
+/// The contributions of an explanation, folded as the design says: within a sample one by one, then the samples, then the mean.
+fn folded(explanation: &Explanation) -> [f64; 3] {
+    let add = |a: [f64; 3], b: [f64; 3]| [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
+    let sample =
+        |nodes: &[snell::explain::ExplainedNode]| nodes.iter().fold([0.0; 3], |sum, n| add(sum, n.contribution));
+    let samples: Vec<[f64; 3]> = explanation.samples.iter().map(|s| sample(&s.nodes)).collect();
+    match samples.as_slice() {
+        [only] => *only,
+        all => all.iter().fold([0.0; 3], |sum, s| add(sum, *s)).map(|c| c / f64::from(explanation.spp)),
+    }
+}
+
+fn adds_up(name: &str, scene: &Scene) {
+    let world = World::new(scene).unwrap();
+    let film = render(&world, &Options::default()).unwrap().film;
+    let width = world.camera.size[0];
+    for (number, pixel) in (0u32..).zip(&film.pixels) {
+        let (explanation, _) = explain(&world, scene, name, number % width, number / width).unwrap();
+        let bits = |c: [f64; 3]| c.map(f64::to_bits);
+        assert_eq!(bits(folded(&explanation)), bits(pixel.to_array()), "{name}, pixel {number}");
+        assert_eq!(bits(explanation.color), bits(pixel.to_array()));
+    }
+}
+
+#[test]
+fn every_pixel_of_the_lecture_adds_up() {
+    for (name, scene) in scenes("lecture", 64) {
+        adds_up(&name, &scene);
+    }
+}
+
+#[test]
+fn every_pixel_of_the_gallery_adds_up() {
+    for (name, scene) in scenes("gallery", 48) {
+        adds_up(&name, &scene);
+    }
+}
+
+/// What was not followed adds at most its bound: the same picture, ten levels deeper.
+#[test]
+fn the_bounds_hold_ten_levels_deeper() {
+    let shallow = scenes("lecture/default", 24).into_iter().chain(scenes("gallery", 16));
+    for (name, mut scene) in shallow {
+        (scene.render.max_depth, scene.render.min_throughput, scene.render.bands) = (2, 0.0, 3);
+        let world = World::new(&scene).unwrap();
+        let mut deep = scene.clone();
+        deep.render.max_depth = 12;
+        let deeper = render(&World::new(&deep).unwrap(), &Options::default()).unwrap().film;
+        let width = world.camera.size[0];
+        let mut used = 0.0f64;
+        for (number, pixel) in (0u32..).zip(&deeper.pixels) {
+            let (explanation, trace) = explain(&world, &scene, &name, number % width, number / width).unwrap();
+            let bounds = explanation.samples.iter().flat_map(|s| &s.nodes).filter_map(|n| n.bound);
+            let open = bounds.fold([0.0; 3], |sum, b| [sum[0] + b[0], sum[1] + b[1], sum[2] + b[2]]);
+            let missing = (*pixel - trace.radiance).to_array();
+            for (missing, open) in missing.into_iter().zip(open) {
+                let open = open / f64::from(scene.render.spp);
+                // A few hundred additions of numbers up to 10.
+                assert!(missing.abs() <= open + 1e-12, "{name}, pixel {number}: {missing} of {open}");
+                used = used.max(if open > 0.0 { missing / open } else { 0.0 });
+            }
+        }
+        // A bound that is a thousand times too large says nothing.
+        assert!(used == 0.0 || used > 1e-3, "{name}: {used}");
+    }
+}
+
+/// The strongest ways and the rest make the picture.
+#[test]
+fn layers_add_up_to_the_picture() {
+    for (name, scene) in scenes("gallery/bubbles", 24).into_iter().chain(scenes("lecture/default", 32)) {
+        let world = World::new(&scene).unwrap();
+        let film = render(&world, &Options::default()).unwrap().film;
+        let split = layers(&world, &scene, 5, 0, &|_| {});
+        assert_eq!(split.picture, film.pixels, "{name}");
+        let left = split.rest.iter().any(|c| *c != Rgb::gray(0.0));
+        assert!(left == (split.layers.len() == 5) || split.layers.len() < 5, "{name}");
+        for (i, pixel) in film.pixels.iter().enumerate() {
+            let all = split.layers.iter().map(|(_, pixels)| pixels[i]).chain([split.rest[i]]);
+            let (sum, count) = all.fold((Rgb::gray(0.0), 0.0), |(sum, count), c| (sum + c, count + 1.0));
+            let trace = trace_pixel(&world, i as u32 % film.width() as u32, i as u32 / film.width() as u32).unwrap();
+            let additions = count + trace.samples.iter().map(|s| s.nodes.len()).sum::<usize>() as f64;
+            for (sum, pixel) in sum.to_array().into_iter().zip(pixel.to_array()) {
+                // One ulp for each addition.
+                assert!(
+                    (sum - pixel).abs() <= additions * f64::EPSILON * pixel.abs().max(1.0),
+                    "{name}: {sum} {pixel}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn an_object_is_found_in_all_pixels_that_show_it() {
+    let mut scene = load("lecture/default", &LoadOptions::default()).unwrap().scene;
+    scene.render.size = [96, 96];
+    let world = World::new(&scene).unwrap();
+    let found = find(&world, &scene, "green", 2, &|_| {});
+    let names = Names { world: &world, scene: &scene };
+    let mut counts: BTreeMap<Path, u64> = BTreeMap::new();
+    for number in 0..96 * 96 {
+        let trace = trace_pixel(&world, number % 96, number / 96).unwrap();
+        let tree = &trace.samples[0];
+        let seen = (0..tree.nodes.len()).filter(|&n| tree.nodes[n].contribution != Rgb::gray(0.0));
+        let mut paths: Vec<Path> = seen.map(|n| Path::of(&names, tree, n)).filter(|path| path.end == "green").collect();
+        paths.sort();
+        paths.dedup();
+        let shown = found.mask[number as usize] > 0.0;
+        assert_eq!(shown, !paths.is_empty(), "pixel {number}");
+        for path in paths {
+            *counts.entry(path).or_insert(0) += 1;
+        }
+    }
+    assert_eq!(found.paths.iter().cloned().collect::<BTreeMap<_, _>>(), counts);
+    let named = |text: &str| found.paths.iter().find(|(path, _)| path.to_string() == text).map(|(_, count)| *count);
+    // Green is large, and small and upside down in the glass.
+    let (direct, through) = (named("camera → green").unwrap(), named("camera → glass(refract) → green").unwrap());
+    assert!(direct > 3 * through && through > 30, "{direct} directly, {through} through the glass");
+}
+
+/// In the middle of the lecture's picture: the sentence names what is there, and the light that is not.
+#[test]
+fn the_lectures_question_is_answered() {
+    let scene = load("lecture/default", &LoadOptions::default()).unwrap().scene;
+    let world = World::new(&scene).unwrap();
+    let (found, _) = explain(&world, &scene, "lecture/default", 190, 300).unwrap();
+    let first = found.samples[0].nodes[0].hit.as_ref().unwrap();
+    assert_eq!((first.object.as_str(), first.eta_before, first.eta_behind), ("glass", 1.0, 2.0));
+    assert_eq!(
+        found.sentence,
+        "Green because 53 % of this pixel is the sphere `green`, seen through `glass` (in at 43.1° → 20.0°); 47 % is the \
+         sphere `glass` itself."
+    );
+    // Snell's law at every surface, by the angles that are said.
+    for hit in found.samples[0].nodes.iter().filter_map(|n| n.hit.as_ref()) {
+        if let Some(out) = hit.angle_out {
+            let sin = |degrees: f64| libm::sin(degrees.to_radians());
+            // Angles from acos and asin lose half of their digits near 0 and 90 degrees.
+            assert!((hit.eta_before * sin(hit.angle_in) - hit.eta_behind * sin(out)).abs() < 1e-7);
+        }
+    }
+}
+
+/// Whatever keeps a light away is named: with and without each blocker the diffuse light agrees with what is said.
+#[test]
+fn lights_are_on_or_someone_blocks_them() {
+    for (name, scene) in scenes("lecture/default", 40).into_iter().chain(scenes("gallery/window", 40)) {
+        let world = World::new(&scene).unwrap();
+        let mut blocked = 0;
+        for number in 0..1600 {
+            let (found, _) = explain(&world, &scene, &name, number % 40, number / 40).unwrap();
+            for node in found.samples.iter().flat_map(|s| &s.nodes) {
+                for light in node.local.iter().flat_map(|local| &local.lights) {
+                    let dark = light.transmittance == [0.0; 3];
+                    let shows = node.contribution != [0.0; 3];
+                    let missing = light.facing && dark && light.blocked_by.is_none() && shows;
+                    assert!(!missing, "{name}, pixel {number}: {} is dark for no reason", light.name);
+                    assert!(dark || light.blocked_by.is_none());
+                    blocked += u32::from(light.blocked_by.is_some());
+                }
+                assert!(node.hit.is_some() || node.ended.is_some());
+                assert_eq!(
+                    node.bound.is_some(),
+                    matches!(node.ended, Some(Ending::Depth | Ending::Threshold | Ending::Rays))
+                );
+            }
+        }
+        assert!(blocked > 10, "{name}: {blocked}");
+    }
+}
+
+/// The form that other programs read, version 1: these keys, and no others.
+#[test]
+fn the_json_form_has_these_keys() {
+    let scene = load("gallery/prism", &LoadOptions::default()).unwrap().scene;
+    let world = World::new(&scene).unwrap();
+    let (found, _) = explain(&world, &scene, "gallery/prism", 200, 240).unwrap();
+    let value = serde_json::to_value(&found).unwrap();
+    let keys = |value: &serde_json::Value| value.as_object().unwrap().keys().cloned().collect::<Vec<_>>().join(" ");
+    assert_eq!(keys(&value), "color integrator pixel samples scene sentence size snell_ray_tree spp transfer");
+    let node = &value["samples"][0]["nodes"][0];
+    assert_eq!(
+        keys(node),
+        "band_nm bound contribution depth dir ended eta hit id kind local medium origin parent subtotal throughput"
+    );
+    assert_eq!(
+        keys(&node["hit"]),
+        "angle_in angle_out eta_before eta_behind material normal object point primitive t total_reflection"
+    );
+}

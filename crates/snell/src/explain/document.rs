@@ -1,0 +1,320 @@
+//! The explanation of a pixel as plain data, which is also its JSON form, version 1.
+//!
+//! Colours and throughputs are linear red, green, blue; angles are in degrees; lengths in scene units.
+
+use super::{Names, bound, sentence};
+use crate::film::Rgb;
+use crate::film::transfer::Transfer;
+use crate::geometry::Vec3;
+use crate::render::trace_pixel;
+use crate::scene::{Integrator, Scene};
+use crate::trace::{Ended, Hit, Node, PixelTrace, RayKind, RayTree};
+use crate::world::World;
+use serde::Serialize;
+
+/// The version of this form.
+pub const VERSION: u32 = 1;
+
+/// Why a pixel has the colour it has.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Explanation {
+    /// [`VERSION`].
+    pub snell_ray_tree: u32,
+    /// The name of the scene.
+    pub scene: String,
+    /// The model of light.
+    pub integrator: Integrator,
+    /// Column and row, from the top left.
+    pub pixel: [u32; 2],
+    /// Width and height of the picture.
+    pub size: [u32; 2],
+    /// The pixel, as in the film.
+    pub color: [f64; 3],
+    /// The curve by which it is shown.
+    pub transfer: Transfer,
+    /// Samples of the pixel.
+    pub spp: u32,
+    /// What a person would say first.
+    pub sentence: String,
+    /// The samples, in the order of addition.
+    pub samples: Vec<ExplainedSample>,
+}
+
+/// One sample: contributions add up to its colour in the order of the nodes, and samples to the pixel times `spp`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ExplainedSample {
+    /// Its sum.
+    pub color: [f64; 3],
+    /// The throughput of the rays that were not followed.
+    pub lost: [f64; 3],
+    /// The rays; parents come before their children.
+    pub nodes: Vec<ExplainedNode>,
+}
+
+/// What kind of ray.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum NodeKind {
+    /// From the eye.
+    Camera,
+    /// From a mirror, in the open.
+    Mirror,
+    /// Out of something transparent, or through a thin pane.
+    Refracted,
+    /// Within a solid.
+    Inside,
+}
+
+/// Why nothing follows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Ending {
+    /// It met nothing.
+    Missed,
+    /// Too many bounces.
+    Depth,
+    /// It carried too little.
+    Threshold,
+    /// The pixel had got all of its rays.
+    Rays,
+    /// What it met sends nothing on.
+    Absorbed,
+}
+
+/// One ray.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ExplainedNode {
+    /// Its place in the list.
+    pub id: usize,
+    /// That of the ray before it.
+    pub parent: Option<usize>,
+    /// Bounces behind it.
+    pub depth: u32,
+    /// What kind of ray.
+    pub kind: NodeKind,
+    /// Where it starts.
+    pub origin: [f64; 3],
+    /// Where it goes, of unit length.
+    pub dir: [f64; 3],
+    /// The object that it is in, or `outside`.
+    pub medium: String,
+    /// The index of refraction there.
+    pub eta: f64,
+    /// The wavelength, if dispersion has split it.
+    pub band_nm: Option<f64>,
+    /// What it can add to the sample for each unit of radiance, where it arrives, or starts if it was not followed.
+    pub throughput: [f64; 3],
+    /// What it met.
+    pub hit: Option<ExplainedHit>,
+    /// The light that the surface itself sends along it.
+    pub local: Option<LocalLight>,
+    /// What its end adds to the sample.
+    pub contribution: [f64; 3],
+    /// The same with everything below it.
+    pub subtotal: [f64; 3],
+    /// Why nothing follows; `None` if something does.
+    pub ended: Option<Ending>,
+    /// The most that it could still have added within ten more levels, if it was not followed.
+    pub bound: Option<[f64; 3]>,
+}
+
+/// Angles between a ray and the normal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Angles {
+    /// Before the surface.
+    pub before: f64,
+    /// Behind it, where anything goes through.
+    pub behind: Option<f64>,
+    /// Is everything reflected?
+    pub total_reflection: bool,
+}
+
+/// What a ray met.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ExplainedHit {
+    /// The object.
+    pub object: String,
+    /// The number of the primitive.
+    pub primitive: u32,
+    /// How far away.
+    pub t: f64,
+    /// Where.
+    pub point: [f64; 3],
+    /// Of unit length, towards the ray.
+    pub normal: [f64; 3],
+    /// Angle to the normal before the surface.
+    pub angle_in: f64,
+    /// Behind it, if anything goes through.
+    pub angle_out: Option<f64>,
+    /// The index before the surface.
+    pub eta_before: f64,
+    /// And behind.
+    pub eta_behind: f64,
+    /// Does it all come back?
+    pub total_reflection: bool,
+    /// The material.
+    pub material: String,
+}
+
+/// The light that a surface itself sends out, before opacity and throughput weigh it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LocalLight {
+    /// Of the light from everywhere.
+    pub ambient: [f64; 3],
+    /// Of its own.
+    pub emission: [f64; 3],
+    /// Of each light.
+    pub lights: Vec<ExplainedLight>,
+}
+
+/// What a light does there.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ExplainedLight {
+    /// The light.
+    pub name: String,
+    /// Does the surface face it?
+    pub facing: bool,
+    /// What of it arrives.
+    pub transmittance: [f64; 3],
+    /// What stands in its way, if nothing arrives.
+    pub blocked_by: Option<String>,
+    /// Where.
+    pub block_point: Option<[f64; 3]>,
+    /// What it shines through.
+    pub through: Vec<String>,
+    /// What it adds.
+    pub diffuse: [f64; 3],
+    /// And in its highlight.
+    pub highlight: [f64; 3],
+    /// Where it stands, or the direction towards it.
+    pub point: [f64; 3],
+    /// Which of the two.
+    pub at_infinity: bool,
+}
+
+/// Explains a pixel, by column and row from the top left; `None` where the picture has no such pixel. The second is what it was
+/// made of.
+pub fn explain(world: &World, scene: &Scene, name: &str, x: u32, y: u32) -> Option<(Explanation, PixelTrace)> {
+    let trace = trace_pixel(world, x, y)?;
+    let names = Names { world, scene };
+    let bound = bound::per_throughput(world);
+    let samples = trace.samples.iter().map(|tree| sample(&names, bound, tree)).collect();
+    let explanation = Explanation {
+        snell_ray_tree: VERSION,
+        scene: name.to_owned(),
+        integrator: world.render.integrator,
+        pixel: [x, y],
+        size: world.camera.size,
+        color: trace.radiance.to_array(),
+        transfer: world.render.transfer,
+        spp: world.render.spp,
+        sentence: sentence::of(&names, &trace),
+        samples,
+    };
+    Some((explanation, trace))
+}
+
+fn sample(names: &Names<'_>, bound: Rgb, tree: &RayTree) -> ExplainedSample {
+    let mut subtotals: Vec<Rgb> = tree.nodes.iter().map(|node| node.contribution).collect();
+    let mut has_children = vec![false; tree.nodes.len()];
+    for (id, node) in tree.nodes.iter().enumerate().rev() {
+        if let Some(parent) = node.parent {
+            subtotals[parent] = subtotals[parent] + subtotals[id];
+            has_children[parent] = true;
+        }
+    }
+    let nodes = tree.nodes.iter().enumerate().map(|(id, node)| {
+        let size = |c: Rgb| Rgb::new(c.r.abs(), c.g.abs(), c.b.abs());
+        let ended = match (node.ended, &node.hit) {
+            (Some(Ended::Depth), _) => Some(Ending::Depth),
+            (Some(Ended::Throughput), _) => Some(Ending::Threshold),
+            (Some(Ended::Rays), _) => Some(Ending::Rays),
+            (None, None) => Some(Ending::Missed),
+            (None, Some(_)) => (!has_children[id]).then_some(Ending::Absorbed),
+        };
+        ExplainedNode {
+            id,
+            parent: node.parent,
+            depth: node.depth,
+            kind: kind(node),
+            origin: node.origin.into(),
+            dir: node.dir.into(),
+            medium: names.medium(node.medium).to_owned(),
+            eta: node.eta,
+            band_nm: node.band.map(|band| names.world.bands[band as usize].wavelength_nm),
+            throughput: node.hit.as_ref().map_or(node.throughput, |hit| hit.throughput).to_array(),
+            hit: node.hit.as_ref().map(|hit| explained(names, node, hit)),
+            local: node.hit.as_ref().filter(|hit| hit.outer).map(|hit| local(names, hit)),
+            contribution: node.contribution.to_array(),
+            subtotal: subtotals[id].to_array(),
+            ended,
+            bound: node.ended.map(|_| (size(node.throughput) * bound).to_array()),
+        }
+    });
+    ExplainedSample { color: tree.sum().to_array(), lost: tree.lost.to_array(), nodes: nodes.collect() }
+}
+
+fn kind(node: &Node) -> NodeKind {
+    match node.kind {
+        RayKind::Camera => NodeKind::Camera,
+        _ if node.medium.is_some() => NodeKind::Inside,
+        RayKind::Mirror => NodeKind::Mirror,
+        RayKind::Refracted => NodeKind::Refracted,
+    }
+}
+
+/// The angles at a hit, by Snell's law for the indices there.
+pub(super) fn angles(dir: Vec3, hit: &Hit) -> Angles {
+    let cos = (-dir.dot(hit.normal)).clamp(0.0, 1.0);
+    let [before, behind] = hit.eta;
+    let sin = ((1.0 - cos) * (1.0 + cos)).sqrt() * before / behind;
+    // Where both are the same nothing is behind, or nothing is bent.
+    let goes_through = before.to_bits() != behind.to_bits();
+    let degrees = |radians: f64| radians * (180.0 / std::f64::consts::PI);
+    Angles {
+        before: degrees(libm::acos(cos)),
+        behind: (goes_through && sin <= 1.0).then(|| degrees(libm::asin(sin))),
+        total_reflection: goes_through && sin > 1.0,
+    }
+}
+
+fn explained(names: &Names<'_>, node: &Node, hit: &Hit) -> ExplainedHit {
+    let Angles { before, behind, total_reflection } = angles(node.dir, hit);
+    ExplainedHit {
+        object: names.object(hit.primitive).to_owned(),
+        primitive: hit.primitive,
+        t: hit.t,
+        point: hit.point.into(),
+        normal: hit.normal.into(),
+        angle_in: before,
+        angle_out: behind,
+        eta_before: hit.eta[0],
+        eta_behind: hit.eta[1],
+        total_reflection,
+        material: names.material(hit.material).to_owned(),
+    }
+}
+
+fn local(names: &Names<'_>, hit: &Hit) -> LocalLight {
+    let lights = hit.lights.iter().enumerate().map(|(number, lit)| {
+        let dark = lit.transmittance == Rgb::gray(0.0);
+        let blocker = lit.between.last().filter(|_| dark && lit.facing);
+        let through = if blocker.is_some() { &lit.between[..lit.between.len() - 1] } else { &lit.between[..] };
+        let mut passed: Vec<String> = through.iter().map(|&(p, _)| names.object(p).to_owned()).collect();
+        passed.dedup();
+        let source = &names.world.lights[number];
+        ExplainedLight {
+            name: names.light(number),
+            facing: lit.facing,
+            transmittance: lit.transmittance.to_array(),
+            blocked_by: blocker.map(|&(primitive, _)| names.object(primitive).to_owned()),
+            block_point: blocker.map(|&(_, t)| (hit.point + lit.wi * t).into()),
+            through: passed,
+            diffuse: lit.diffuse.to_array(),
+            highlight: lit.highlight.to_array(),
+            point: source.at.into(),
+            at_infinity: source.at_infinity,
+        }
+    });
+    LocalLight { ambient: hit.ambient.to_array(), emission: hit.emission.to_array(), lights: lights.collect() }
+}

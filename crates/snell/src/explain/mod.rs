@@ -1,0 +1,63 @@
+//! Why a pixel has the colour it has.
+//!
+//! ```text
+//! render::trace_pixel ─▶ PixelTrace ─┬─▶ Explanation   with names, angles, bounds: the JSON form
+//!  (the engine, recorded)            ├─▶ Path          camera → glass(refract) → green, of every contribution
+//!                                    └─▶ sentence      what a person would say first
+//! ```
+//!
+//! Nothing here traces a ray or knows physics that the engine does not have: it names and adds up what was recorded.
+
+mod bound;
+mod document;
+mod path;
+mod sentence;
+mod survey;
+mod view;
+
+pub use document::{
+    Angles, Ending, ExplainedHit, ExplainedLight, ExplainedNode, ExplainedSample, Explanation, LocalLight, NodeKind,
+    explain,
+};
+pub use path::{How, Leg, Path, PathError};
+pub use sentence::{color_name, percent};
+pub use survey::{Layers, Sightings, by_path, find, layers, only};
+pub use view::ViewScene;
+
+use crate::scene::Scene;
+use crate::world::World;
+
+/// The names of a scene, which its world does not keep.
+#[derive(Clone, Copy, Debug)]
+pub struct Names<'a> {
+    /// The world.
+    pub world: &'a World,
+    /// The scene that it was made of.
+    pub scene: &'a Scene,
+}
+
+/// What the space between the objects is called.
+pub const OUTSIDE: &str = "outside";
+
+impl<'a> Names<'a> {
+    /// The object that a primitive belongs to.
+    pub fn object(&self, primitive: u32) -> &'a str {
+        self.world.object_of(primitive).map_or("?", |object| object.name.as_str())
+    }
+
+    /// A light, by its number in the scene.
+    pub fn light(&self, number: usize) -> String {
+        let name = self.scene.lights.get(number).and_then(|light| light.name.clone());
+        name.unwrap_or_else(|| format!("light {}", number + 1))
+    }
+
+    /// A material, by its number in the scene.
+    pub fn material(&self, number: u32) -> &'a str {
+        self.scene.materials.get_index(number as usize).map_or("?", |(name, _)| name.as_str())
+    }
+
+    /// The medium of a solid, by one of its primitives.
+    pub fn medium(&self, primitive: Option<u32>) -> &'a str {
+        primitive.map_or(OUTSIDE, |primitive| self.object(primitive))
+    }
+}

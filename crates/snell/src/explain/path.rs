@@ -1,0 +1,161 @@
+//! The way of a contribution: `camera → glass(refract) → green`.
+
+use super::Names;
+use crate::trace::{Node, RayKind, RayTree};
+use std::fmt;
+
+/// What a ray did at an object on its way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum How {
+    /// Its mirror image was followed.
+    Mirror,
+    /// It went through, after so many reflections inside.
+    Refract(u32),
+}
+
+/// One object on the way.
+#[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Leg {
+    /// Its name.
+    pub object: String,
+    /// What happened there.
+    pub how: How,
+}
+
+/// From the camera, by some objects, to what is seen at the end: an object's own colour, or the `sky`.
+#[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Path {
+    /// The objects on the way.
+    pub legs: Vec<Leg>,
+    /// What is seen.
+    pub end: String,
+}
+
+/// What the background is called at the end of a path.
+pub const SKY: &str = "sky";
+
+/// A text that is no path.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("`{0}` is no step of a path: expected `name(mirror)`, `name(refract)` or, at the end, a name")]
+pub struct PathError(pub String);
+
+impl Path {
+    /// The way of a node's contribution.
+    pub fn of(names: &Names<'_>, tree: &RayTree, node: usize) -> Self {
+        let end = tree.nodes[node].hit.as_ref().map_or(SKY, |hit| names.object(hit.primitive)).to_owned();
+        let mut way: Vec<&Node> =
+            std::iter::successors(Some(&tree.nodes[node]), |n| n.parent.map(|p| &tree.nodes[p])).collect();
+        way.reverse();
+        let mut legs: Vec<Leg> = Vec::new();
+        // Within an object that has been entered: what follows inside belongs to its leg.
+        let mut within: Option<&str> = None;
+        for pair in way.windows(2) {
+            let Some(hit) = &pair[0].hit else { continue };
+            let object = names.object(hit.primitive);
+            let refracts = pair[1].kind == RayKind::Refracted;
+            match (within, legs.last_mut()) {
+                // Against its wall from inside, or out of it.
+                (Some(entered), Some(Leg { how: How::Refract(inside), .. })) if entered == object && !hit.outer => {
+                    *inside += u32::from(!refracts);
+                    if refracts {
+                        within = None;
+                    }
+                }
+                _ => {
+                    let how = if refracts { How::Refract(0) } else { How::Mirror };
+                    within = pair[1].medium.filter(|_| refracts).map(|_| object);
+                    legs.push(Leg { object: object.to_owned(), how });
+                }
+            }
+        }
+        Self { legs, end }
+    }
+
+    /// Reads what [`Display`](fmt::Display) writes; arrows and `camera` may be left out, and names may be in quotes.
+    ///
+    /// # Errors
+    /// The first step that is none.
+    pub fn parse(text: &str) -> Result<Self, PathError> {
+        let mut steps = split(text);
+        if steps.first().is_some_and(|step| step == "camera") {
+            steps.remove(0);
+        }
+        let end = steps.pop().filter(|end| !end.contains('(')).ok_or_else(|| PathError(text.to_owned()))?;
+        let leg = |step: String| {
+            let (object, how) =
+                step.strip_suffix(')').and_then(|s| s.rsplit_once('(')).ok_or(PathError(step.clone()))?;
+            let how = match how.split_whitespace().collect::<Vec<_>>().as_slice() {
+                ["mirror"] => How::Mirror,
+                ["refract"] => How::Refract(0),
+                ["refract,", count, "inside"] => How::Refract(count.parse().map_err(|_| PathError(step.clone()))?),
+                _ => return Err(PathError(step.clone())),
+            };
+            Ok(Leg { object: object.to_owned(), how })
+        };
+        Ok(Self { legs: steps.into_iter().map(leg).collect::<Result<_, _>>()?, end })
+    }
+}
+
+/// Steps between arrows; or, where there is none, between spaces outside of brackets and quotes.
+fn split(text: &str) -> Vec<String> {
+    let clean = |step: &str| step.trim().replace(['"', '`'], "");
+    if text.contains('→') || text.contains("->") {
+        return text.replace("->", "→").split('→').map(clean).filter(|s| !s.is_empty()).collect();
+    }
+    let (mut steps, mut step, mut quoted, mut nested) = (Vec::new(), String::new(), false, 0);
+    for c in text.chars() {
+        match c {
+            '"' | '`' => quoted = !quoted,
+            '(' => nested += 1,
+            ')' => nested -= 1,
+            _ => {}
+        }
+        if c.is_whitespace() && !quoted && nested <= 0 {
+            steps.push(std::mem::take(&mut step));
+        } else {
+            step.push(c);
+        }
+    }
+    steps.push(step);
+    steps.iter().map(|step| clean(step)).filter(|s| !s.is_empty()).collect()
+}
+
+impl fmt::Display for Path {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("camera → ")?;
+        for Leg { object, how } in &self.legs {
+            match how {
+                How::Mirror => write!(f, "{object}(mirror) → ")?,
+                How::Refract(0) => write!(f, "{object}(refract) → ")?,
+                How::Refract(inside) => write!(f, "{object}(refract, {inside} inside) → ")?,
+            }
+        }
+        f.write_str(&self.end)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn paths_are_read_as_they_are_written() {
+        let leg = |object: &str, how| Leg { object: object.to_owned(), how };
+        let paths = [
+            Path { legs: vec![], end: "green".to_owned() },
+            Path {
+                legs: vec![leg("glass", How::Refract(0)), leg("my mirror", How::Mirror)],
+                end: "red ball".to_owned(),
+            },
+            Path { legs: vec![leg("glass", How::Refract(3))], end: "sky".to_owned() },
+        ];
+        for path in &paths {
+            assert_eq!(Path::parse(&path.to_string()).as_ref(), Ok(path));
+        }
+        assert_eq!(Path::parse("glass(refract) \"my mirror\"(mirror) \"red ball\"").as_ref(), Ok(&paths[1]));
+        assert_eq!(Path::parse("glass(refract, 3 inside) sky").as_ref(), Ok(&paths[2]));
+        for wrong in ["", "glass(refract)", "glass(bent) green", "glass green blue"] {
+            assert!(Path::parse(wrong).is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,156 @@
+//! What a person would say first about a pixel.
+
+use super::document::angles;
+use super::path::SKY;
+use super::{How, Leg, Names, Path};
+use crate::film::Rgb;
+use crate::trace::PixelTrace;
+use indexmap::IndexMap;
+
+/// Parts that are named; the rest is summed up.
+const NAMED: usize = 3;
+
+/// A share in words: `61 %`, `0.4 %`.
+pub fn percent(share: f64) -> String {
+    let percent = 100.0 * share;
+    if percent.abs() >= 9.95 || percent == 0.0 { format!("{percent:.0} %") } else { format!("{percent:.1} %") }
+}
+
+/// A word for a linear colour.
+pub fn color_name(color: Rgb) -> &'static str {
+    let [r, g, b] = color.to_array().map(|c| c.clamp(0.0, 1.0));
+    let (most, least) = (r.max(g).max(b), r.min(g).min(b));
+    if most < 0.004 {
+        return "black";
+    }
+    if most - least < 0.12 * most {
+        return match most {
+            _ if most < 0.03 => "nearly black",
+            _ if most < 0.6 => "grey",
+            _ if most < 0.9 => "light grey",
+            _ => "white",
+        };
+    }
+    // The angle of hue of HSV, in degrees.
+    let hue = 60.0
+        * match () {
+            () if most == r => (g - b) / (most - least),
+            () if most == g => 2.0 + (b - r) / (most - least),
+            () => 4.0 + (r - g) / (most - least),
+        };
+    match if hue < 0.0 { hue + 360.0 } else { hue } {
+        h if !(12.0..345.0).contains(&h) => "red",
+        h if h < 42.0 => {
+            if most < 0.25 {
+                "brown"
+            } else {
+                "orange"
+            }
+        }
+        h if h < 68.0 => "yellow",
+        h if h < 165.0 => "green",
+        h if h < 200.0 => "turquoise",
+        h if h < 255.0 => "blue",
+        h if h < 300.0 => "violet",
+        _ => "pink",
+    }
+}
+
+/// The parts of a pixel by their paths, the strongest first: the sum of what they add to all samples, and the first node.
+pub(super) fn parts(names: &Names<'_>, trace: &PixelTrace) -> Vec<(Path, Rgb, (usize, usize))> {
+    let mut parts: IndexMap<Path, (Rgb, (usize, usize))> = IndexMap::new();
+    for (sample, tree) in trace.samples.iter().enumerate() {
+        for (number, node) in tree.nodes.iter().enumerate().filter(|(_, n)| n.contribution != Rgb::gray(0.0)) {
+            let part = parts.entry(Path::of(names, tree, number)).or_insert((Rgb::gray(0.0), (sample, number)));
+            part.0 = part.0 + node.contribution;
+        }
+    }
+    let mut parts: Vec<_> = parts.into_iter().map(|(path, (sum, first))| (path, sum, first)).collect();
+    // Stable: of equally strong ones the one that comes first in the order of addition.
+    parts.sort_by(|a, b| b.1.mean().total_cmp(&a.1.mean()));
+    parts
+}
+
+/// The sentence.
+pub(super) fn of(names: &Names<'_>, trace: &PixelTrace) -> String {
+    let parts = parts(names, trace);
+    let total: f64 = parts.iter().map(|(_, sum, _)| sum.mean()).sum();
+    let color = color_name(trace.radiance);
+    let Some((strongest, sum, (sample, node))) = parts.first() else {
+        return "Black because no ray of this pixel found any light.".to_owned();
+    };
+    let share = |sum: f64| if parts.len() == 1 { "all".to_owned() } else { percent(sum / total) };
+    let mut clauses = vec![format!(
+        "{} because {} of this pixel is {}{}",
+        capitalized(color),
+        share(sum.mean()),
+        what(names, strongest),
+        bending(trace, *sample, *node)
+    )];
+    for (path, sum, _) in parts.iter().take(NAMED).skip(1) {
+        clauses.push(format!("{} is {}", share(sum.mean()), what(names, path)));
+    }
+    if parts.len() > NAMED {
+        let rest: f64 = parts[NAMED..].iter().map(|(_, sum, _)| sum.mean()).sum();
+        let others = parts.len() - NAMED;
+        clauses.push(format!("{} comes by {others} other way{}", share(rest), if others == 1 { "" } else { "s" }));
+    }
+    clauses.join("; ") + "."
+}
+
+/// What is seen at the end of a path, and by which way.
+fn what(names: &Names<'_>, path: &Path) -> String {
+    let end = match path.end.as_str() {
+        SKY => "the background".to_owned(),
+        name => match path.legs.last() {
+            None => format!("{}{}`{name}` itself", kind(names, name), ""),
+            Some(_) => format!("{}`{name}`", kind(names, name)),
+        },
+    };
+    let mut way: Vec<(String, u32)> = Vec::new();
+    for Leg { object, how } in &path.legs {
+        let leg = match how {
+            How::Mirror => format!("in the mirror of `{object}`"),
+            How::Refract(0) => format!("through `{object}`"),
+            How::Refract(1) => format!("through `{object}` after a reflection inside"),
+            How::Refract(n) => format!("through `{object}` after {n} reflections inside"),
+        };
+        match way.last_mut() {
+            Some((last, times)) if *last == leg => *times += 1,
+            _ => way.push((leg, 1)),
+        }
+    }
+    let way: Vec<String> = way
+        .into_iter()
+        .map(|(leg, times)| match times {
+            1 => leg,
+            2 => format!("twice {leg}"),
+            n => format!("{n} times {leg}"),
+        })
+        .collect();
+    if way.is_empty() { end } else { format!("{end}, seen {}", way.join(" and ")) }
+}
+
+fn kind(names: &Names<'_>, name: &str) -> &'static str {
+    let sphere = names.world.objects.iter().find(|object| object.name == name);
+    let is_sphere = sphere.is_some_and(|object| (object.first as usize) < names.world.spheres.len());
+    // A name like `sphere 3` says it already.
+    if is_sphere && !name.starts_with("sphere") { "the sphere " } else { "" }
+}
+
+/// How the strongest path is bent where it first goes into something.
+fn bending(trace: &PixelTrace, sample: usize, node: usize) -> String {
+    let tree = &trace.samples[sample];
+    let way = std::iter::successors(Some(node), |&n| tree.nodes[n].parent);
+    let hits = way.filter_map(|n| tree.nodes[n].parent.map(|parent| (n, parent)));
+    let first = hits.filter(|&(child, _)| tree.nodes[child].kind == crate::trace::RayKind::Refracted).last();
+    let Some((_, at)) = first else { return String::new() };
+    let Some(hit) = &tree.nodes[at].hit else { return String::new() };
+    let bent = angles(tree.nodes[at].dir, hit);
+    bent.behind.map_or(String::new(), |behind| format!(" (in at {:.1}° → {behind:.1}°)", bent.before))
+}
+
+fn capitalized(word: &str) -> String {
+    let mut chars = word.chars();
+    chars.next().map_or(String::new(), |first| first.to_uppercase().chain(chars).collect())
+}

@@ -1,0 +1,126 @@
+//! All pixels of a picture by their paths: one layer for each, and where an object is seen.
+
+use super::{Names, Path};
+use crate::film::Rgb;
+use crate::render::trace_pixel;
+use crate::scene::Scene;
+use crate::threads;
+use crate::trace::PixelTrace;
+use crate::world::World;
+use indexmap::IndexMap;
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// A picture in layers that add up to it.
+#[derive(Clone, Debug)]
+pub struct Layers {
+    /// The strongest paths, the strongest first, each with its own picture, row by row.
+    pub layers: Vec<(Path, Vec<Rgb>)>,
+    /// All other paths together.
+    pub rest: Vec<Rgb>,
+    /// The picture itself.
+    pub picture: Vec<Rgb>,
+}
+
+/// In how many pixels an object is seen, by each path that ends there; and in which.
+#[derive(Clone, Debug, Default)]
+pub struct Sightings {
+    /// The paths, the one of most pixels first.
+    pub paths: Vec<(Path, u64)>,
+    /// For each pixel, row by row, the share of it that is the object.
+    pub mask: Vec<f64>,
+}
+
+/// What each pixel's trees are made into, row by row, on so many threads; `done` is told how many rows there are already.
+fn rows<T: Send>(
+    world: &World,
+    threads: usize,
+    done: &(dyn Fn(u64) + Sync),
+    of: impl Fn(&PixelTrace) -> T + Sync,
+) -> Vec<T> {
+    let [width, height] = world.camera.size;
+    let count = AtomicU64::new(0);
+    let row = |y: u32| {
+        let pixels: Vec<T> = (0..width).filter_map(|x| trace_pixel(world, x, y)).map(|trace| of(&trace)).collect();
+        done(count.fetch_add(1, Ordering::Relaxed) + 1);
+        pixels
+    };
+    let rows: Vec<Vec<T>> = threads::share(threads, |parallel| {
+        if parallel { (0..height).into_par_iter().map(row).collect() } else { (0..height).map(row).collect() }
+    });
+    rows.into_iter().flatten().collect()
+}
+
+/// The paths of a pixel, each with what it adds, by the engine's order of addition.
+pub fn by_path(names: &Names<'_>, trace: &PixelTrace) -> Vec<(Path, Rgb)> {
+    let mut numbers: IndexMap<Path, u32> = IndexMap::new();
+    let of: Vec<Vec<u32>> = trace
+        .samples
+        .iter()
+        .map(|tree| {
+            let number = |(node, n): (usize, &crate::trace::Node)| {
+                if n.contribution == Rgb::gray(0.0) {
+                    return u32::MAX;
+                }
+                let next = numbers.len() as u32;
+                *numbers.entry(Path::of(names, tree, node)).or_insert(next)
+            };
+            tree.nodes.iter().enumerate().map(number).collect()
+        })
+        .collect();
+    let sum = |number: u32| trace.sum_of(|sample, node| of[sample][node] == number);
+    numbers.iter().map(|(path, &number)| (path.clone(), sum(number))).collect()
+}
+
+/// Splits a picture by paths: the `most` strongest of them, and the rest.
+pub fn layers(world: &World, scene: &Scene, most: usize, threads: usize, done: &(dyn Fn(u64) + Sync)) -> Layers {
+    let names = Names { world, scene };
+    let pixels = rows(world, threads, done, |trace| (trace.radiance, by_path(&names, trace)));
+    let mut strength: IndexMap<&Path, f64> = IndexMap::new();
+    for (path, color) in pixels.iter().flat_map(|(_, paths)| paths) {
+        *strength.entry(path).or_insert(0.0) += color.mean().abs();
+    }
+    strength.sort_by(|_, a, _, b| b.total_cmp(a));
+    let black = vec![Rgb::gray(0.0); pixels.len()];
+    let mut layers: IndexMap<Path, Vec<Rgb>> =
+        strength.keys().take(most).map(|&path| (path.clone(), black.clone())).collect();
+    let mut rest = black;
+    for (pixel, (_, paths)) in pixels.iter().enumerate() {
+        for (path, color) in paths {
+            let layer = layers.get_mut(path).unwrap_or(&mut rest);
+            layer[pixel] = layer[pixel] + *color;
+        }
+    }
+    Layers {
+        layers: layers.into_iter().collect(),
+        rest,
+        picture: pixels.into_iter().map(|(radiance, _)| radiance).collect(),
+    }
+}
+
+/// What one path alone adds to each pixel, row by row.
+pub fn only(world: &World, scene: &Scene, path: &Path, threads: usize, done: &(dyn Fn(u64) + Sync)) -> Vec<Rgb> {
+    let names = Names { world, scene };
+    rows(world, threads, done, |trace| {
+        let all = by_path(&names, trace);
+        all.into_iter().find(|(other, _)| other == path).map_or(Rgb::gray(0.0), |(_, color)| color)
+    })
+}
+
+/// Where an object is seen, directly or by others. A pixel counts once for each path that it has.
+pub fn find(world: &World, scene: &Scene, object: &str, threads: usize, done: &(dyn Fn(u64) + Sync)) -> Sightings {
+    let names = Names { world, scene };
+    let pixels = rows(world, threads, done, |trace| {
+        let all = by_path(&names, trace);
+        let total: f64 = all.iter().map(|(_, color)| color.mean().abs()).sum();
+        let seen: Vec<(Path, Rgb)> = all.into_iter().filter(|(path, _)| path.end == object).collect();
+        let share: f64 = seen.iter().map(|(_, color)| color.mean().abs()).sum();
+        (seen, if total > 0.0 { share / total } else { 0.0 })
+    });
+    let mut paths: IndexMap<Path, u64> = IndexMap::new();
+    for (path, _) in pixels.iter().flat_map(|(seen, _)| seen) {
+        *paths.entry(path.clone()).or_insert(0) += 1;
+    }
+    paths.sort_by(|_, a, _, b| b.cmp(a));
+    Sightings { paths: paths.into_iter().collect(), mask: pixels.into_iter().map(|(_, share)| share).collect() }
+}

@@ -1,0 +1,105 @@
+//! The scene as the viewer draws it: shapes, camera and lights as plain data, version 1 of its JSON form.
+
+use super::Names;
+use crate::geometry::Bounds;
+use serde::Serialize;
+
+/// Of an object with more triangles only the box is drawn.
+const MOST_FACES: u32 = 40_000;
+
+/// A scene to look at.
+#[derive(Clone, Debug, Serialize)]
+pub struct ViewScene {
+    /// The version of this form: 1.
+    snell_view: u32,
+    spheres: Vec<ViewSphere>,
+    meshes: Vec<ViewMesh>,
+    camera: ViewCamera,
+    lights: Vec<ViewLight>,
+}
+
+#[derive(Clone, Debug, Serialize)]
+struct ViewSphere {
+    name: String,
+    center: [f64; 3],
+    radius: f64,
+    color: [f64; 3],
+    opacity: f64,
+}
+
+#[derive(Clone, Debug, Serialize)]
+struct ViewMesh {
+    name: String,
+    /// x, y, z of one vertex after the other.
+    vertices: Vec<f64>,
+    /// Three vertices for each face.
+    faces: Vec<u32>,
+    color: [f64; 3],
+    opacity: f64,
+}
+
+#[derive(Clone, Debug, Serialize)]
+struct ViewCamera {
+    eye: [f64; 3],
+    corners: [[f64; 3]; 4],
+    up: [f64; 3],
+}
+
+#[derive(Clone, Debug, Serialize)]
+struct ViewLight {
+    name: String,
+    position: Option<[f64; 3]>,
+    direction: Option<[f64; 3]>,
+    color: [f64; 3],
+}
+
+impl ViewScene {
+    /// Of a scene and its world.
+    pub fn of(names: &Names<'_>) -> Self {
+        let world = names.world;
+        let look = |primitive: u32| {
+            let m = &world.materials[world.material_of(primitive as usize) as usize];
+            let own = if m.emission.mean() > 0.0 {
+                m.emission
+            } else if m.kd.mean() > 0.0 {
+                m.kd
+            } else {
+                m.ka
+            };
+            let color = own.to_array().map(|c| c.clamp(0.0, 1.0));
+            // What is wholly transparent is still to be seen.
+            (if own.mean() > 0.0 { color } else { [0.7, 0.8, 0.85] }, m.ko.mean().clamp(0.15, 1.0))
+        };
+        let (mut spheres, mut meshes) = (Vec::new(), Vec::new());
+        for object in world.objects.iter().filter(|object| object.count > 0) {
+            let (color, opacity) = look(object.first);
+            let name = object.name.clone();
+            if let Some(sphere) = world.spheres.get(object.first as usize) {
+                spheres.push(ViewSphere { name, center: sphere.center.into(), radius: sphere.radius, color, opacity });
+                continue;
+            }
+            let corners = (object.first..object.first + object.count).flat_map(|p| world.corners(p as usize));
+            let (vertices, faces): (Vec<f64>, Vec<u32>) = if object.count > MOST_FACES {
+                let corners = Bounds::of(corners).corners();
+                let sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+                let faces = sides.iter().flat_map(|&[a, b, c, d]| [a, b, c, a, c, d]).collect();
+                (corners.iter().flat_map(|p| [p.x, p.y, p.z]).collect(), faces)
+            } else {
+                (corners.flat_map(|p| [p.x, p.y, p.z]).collect(), (0..3 * object.count).collect())
+            };
+            meshes.push(ViewMesh { name, vertices, faces, color, opacity });
+        }
+        let lights = world.lights.iter().enumerate().map(|(number, light)| ViewLight {
+            name: names.light(number),
+            position: (!light.at_infinity).then(|| light.at.into()),
+            direction: light.at_infinity.then(|| light.at.into()),
+            color: light.color.to_array(),
+        });
+        let camera = ViewCamera {
+            eye: world.camera.eye.into(),
+            corners: world.camera.corners().map(Into::into),
+            up: world.camera.axes[1].into(),
+        };
+        Self { snell_view: 1, spheres, meshes, camera, lights: lights.collect() }
+    }
+}
