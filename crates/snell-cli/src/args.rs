@@ -160,13 +160,13 @@ pub struct ExplainArgs {
     #[arg(value_name = "X,Y", value_parser = pixel, required_unless_present = "find")]
     pub pixel: Option<[u32; 2]>,
     /// Print the tree as JSON
-    #[arg(long, conflicts_with_all = ["html", "svg"], help_heading = "Form")]
+    #[arg(long, conflicts_with_all = ["html", "svg", "light", "set", "without"], help_heading = "Form")]
     pub json: bool,
     /// Write a page that shows the tree and its rays in 3D; it needs nothing else and opens from disk
-    #[arg(long, value_name = "FILE", conflicts_with = "svg", help_heading = "Form")]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["svg", "light", "set", "without"], help_heading = "Form")]
     pub html: Option<PathBuf>,
     /// Write a drawing of the angles at each surface on the strongest way
-    #[arg(long, value_name = "FILE", help_heading = "Form")]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["light", "set", "without"], help_heading = "Form")]
     pub svg: Option<PathBuf>,
     /// Show no more bounces than this
     #[arg(long, value_name = "N", help_heading = "Form")]
@@ -175,7 +175,7 @@ pub struct ExplainArgs {
     #[arg(long, value_name = "N", help_heading = "Form")]
     pub top: Option<usize>,
     /// Why is this light on, or not on, what the pixel shows?
-    #[arg(long, value_name = "NAME", help_heading = "Questions")]
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["set", "without"], help_heading = "Questions")]
     pub light: Option<String>,
     /// The same pixel without an object
     #[arg(long, value_name = "OBJECT", help_heading = "Questions")]

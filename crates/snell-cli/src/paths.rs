@@ -46,6 +46,8 @@ pub fn run(world: &World, loaded: &Loaded, args: &RenderArgs, output: &Path) -> 
     let split = layers(world, &loaded.scene, most, args.threads.into(), &done);
     reporter.finish();
     let total: f64 = split.picture.iter().map(|c| c.mean()).sum();
+    // A black picture has no shares.
+    let total = if total == 0.0 { 1.0 } else { total };
     let mut named: Vec<(String, Vec<Rgb>)> =
         split.layers.into_iter().map(|(way, pixels)| (way.to_string(), pixels)).collect();
     named.push(("rest".to_owned(), split.rest));

@@ -47,6 +47,8 @@ fn questions_are_answered() {
     assert!(light.contains("on blue at") && light.contains("blocked by glass at"), "{light}");
     let without = said(&["lecture/default", "327,163", "--without", "red"]);
     assert!(without.contains("camera → green(mirror) → red") && without.contains("Green because all"), "{without}");
+    let same = said(&["gallery/window", "600,100", "--without", "red ball"]);
+    assert!(same.contains("without red ball:"), "{same}");
     let less = said(&["lecture/default", "190,300", "--set", "material.glass.eta=1.0"]);
     assert!(less.contains("with material.glass.eta=1.0:") && less.contains("before"), "{less}");
     let found = said(&["lecture/default", "--find", "green", "--size", "64x64"]);

@@ -218,6 +218,65 @@ fn the_json_form_has_these_keys() {
     );
     assert_eq!(
         keys(&node["hit"]),
-        "angle_in angle_out eta_before eta_behind material normal object point primitive t total_reflection"
+        "angle_in angle_out eta_before eta_behind material normal object point primitive t throughput total_reflection"
+    );
+}
+
+/// What happens inside of an object belongs to its leg, also around another one in it.
+#[test]
+fn paths_know_what_is_in_what() {
+    let text = r#"
+snell = 1
+background = 1
+[render]
+integrator = "whitted"
+size = [3, 3]
+[camera]
+eye = [0.1, 0.2, 9]
+look_at = [0, 0, 0]
+up = [0, 1, 0]
+bounds = [-0.1, 0.1, -0.1, 0.1]
+near = -1
+[material.glass]
+ko = 0
+eta = 1.5
+[material.air]
+ko = 0
+eta = 1
+priority = 1
+[[sphere]]
+name = "outer"
+center = [0, 0, 0]
+radius = 2
+material = "glass"
+[[sphere]]
+name = "bubble (small)"
+center = [0, 0, 0]
+radius = 1
+material = "air"
+"#;
+    let source = snell_formats::Source::new("s.toml", text);
+    let options = LoadOptions::default();
+    let kind = load::Kind::Toml;
+    let scene = load::load_text(source, kind, std::path::Path::new("."), &options).unwrap().scene;
+    let world = World::new(&scene).unwrap();
+    let names = Names { world: &world, scene: &scene };
+    let trace = trace_pixel(&world, 1, 1).unwrap();
+    let tree = &trace.samples[0];
+    let strongest =
+        (0..tree.nodes.len()).max_by(|&a, &b| tree.nodes[a].contribution.g.total_cmp(&tree.nodes[b].contribution.g));
+    let path = Path::of(&names, tree, strongest.unwrap());
+    assert_eq!(path.to_string(), "camera → outer(refract) → bubble (small)(refract) → sky");
+    assert_eq!(Path::parse(&path.to_string()).as_ref(), Ok(&path));
+    let all: Vec<String> = (0..tree.nodes.len())
+        .filter(|&n| tree.nodes[n].contribution.g > 0.0)
+        .map(|n| Path::of(&names, tree, n).to_string())
+        .collect();
+    // Against the outer wall from inside, behind the bubble: within the outer leg.
+    assert!(
+        all.contains(
+            &"camera → outer(refract, 1 inside) → bubble (small)(refract) → bubble (small)(refract) → sky".to_owned()
+        ),
+        "{all:#?}"
     );
 }

@@ -242,3 +242,90 @@ fn a_pane_has_no_back() {
     assert_eq!(of(1.0), of(-1.0));
     assert_eq!(of(1.0).len(), 3);
 }
+
+/// The eye under a wide interface, far from its edges, is in the water.
+#[test]
+fn a_camera_under_an_interface_is_under_water() {
+    let mut scene = furnace(8);
+    glass(&mut scene, "water", 1.33, 0);
+    scene.materials["water"].sigma_a = Some(Rgb::gray(0.1));
+    let mut surface = plane([0.0; 3], [0.0, 1.0, 0.0], [100.0, 100.0], "water");
+    surface.inside = Some("water".to_owned());
+    scene.planes.push(surface);
+    let tree = tree(&scene, [0.0, -3.0, 0.0], [0.0, 1.0, 0.0]);
+    let (r, tau) = ((0.33f64 / 2.33) * (0.33 / 2.33), libm::exp(-0.3));
+    assert!((tree.nodes[0].eta - 1.33).abs() < 1e-15);
+    let statistics = render(&World::new(&scene).unwrap(), &Options::default()).unwrap().statistics;
+    assert_eq!(statistics.stray.count, 0, "the sea has no other shore");
+    let out = tree.nodes.iter().find(|n| n.kind == RayKind::Refracted).unwrap();
+    // A few roundings.
+    assert!((out.throughput.g - (1.0 - r) * tau).abs() < 1e-14, "{:?}", out.throughput);
+}
+
+/// A mirror image turns faces over: what was inside stays inside.
+#[test]
+fn a_mirrored_interface_is_what_it_was() {
+    let mut scene = furnace(30);
+    scene.background = Rgb::new(0.1, 0.3, 0.8);
+    glass(&mut scene, "glass", 1.5, 0);
+    let red = Material { emission: Rgb::new(0.9, 0.1, 0.1), ..Material::default() };
+    scene.materials.insert("red".to_owned(), red);
+    ball(&mut scene, [0.0, 0.5, -4.0], 1.5, "red");
+    let lathe = |inside: Option<&str>, factor: f64| Lathe {
+        name: None,
+        profile: vec![[0.0, -1.0], [1.2, -0.6], [0.9, 1.0], [0.0, 1.3]],
+        segments: 12,
+        smooth_angle: 0.0,
+        material: "glass".to_owned(),
+        inside: inside.map(str::to_owned),
+        outside: None,
+        transform: vec![snell::scene::Transform::Scale([factor, 1.0, 1.0])],
+        instances: vec![],
+    };
+    let mut film = |inside: Option<&str>, factor: f64| {
+        scene.lathes = vec![lathe(inside, factor)];
+        let world = World::new(&scene).unwrap();
+        let rendered = render(&world, &Options::default()).unwrap();
+        assert_eq!(rendered.statistics.stray.count, 0, "{inside:?} {factor}");
+        rendered.film
+    };
+    let solid = film(None, 1.0);
+    for film in [film(None, -1.0), film(Some("glass"), 1.0), film(Some("glass"), -1.0)] {
+        // Rounding decides at silhouettes.
+        assert!(alike(&film, &solid) * 100 >= 900 * 99, "{} of 900", alike(&film, &solid));
+    }
+}
+
+/// At an edge a pane shifts rays beside their face: each wall of a bubble of many faces is gone through once all the same.
+#[test]
+fn a_bubble_of_panes_has_two_walls_everywhere() {
+    let mut scene = furnace(48);
+    pane(&mut scene, 1.4, 0.08);
+    let profile = (0..=12).map(|i| {
+        let (sin, cos) = libm::sincos(std::f64::consts::PI * f64::from(i) / 12.0);
+        [if i % 12 == 0 { 0.0 } else { sin }, -cos]
+    });
+    scene.lathes.push(Lathe {
+        name: None,
+        profile: profile.collect(),
+        segments: 20,
+        smooth_angle: 60.0,
+        material: "pane".to_owned(),
+        inside: None,
+        outside: None,
+        transform: vec![],
+        instances: vec![],
+    });
+    let world = World::new(&scene).unwrap();
+    let (mut seen, mut twice) = (0, 0);
+    for pixel in 0..48 * 48 {
+        let (x, y) = (f64::from(pixel % 48) - 23.5, f64::from(pixel / 48) - 23.5);
+        // Within four fifths of its outline, which has a radius of 1/√99·5·47/4 pixels.
+        if (x * x + y * y).sqrt() < 4.7 {
+            let (_, tree) = traced(&world, pixel % 48, pixel / 48);
+            seen += 1;
+            twice += u32::from(straight_through(&tree).2 == 2);
+        }
+    }
+    assert!(seen > 50 && twice == seen, "{twice} of {seen}");
+}

@@ -134,7 +134,9 @@ fn scaled(scene: &Scene, map: impl Fn(f64) -> f64, factor: f64) -> Scene {
     let offset = map(0.0);
     let place = |transform: &mut Vec<Transform>, instances: &mut Vec<Vec<Transform>>| {
         let steps = [Transform::Scale([factor; 3]), Transform::Move([offset; 3])];
-        instances.iter_mut().for_each(|instance| instance.extend(steps.clone()));
+        for instance in instances.iter_mut() {
+            instance.extend(steps.clone());
+        }
         if instances.is_empty() {
             transform.extend(steps);
         }
@@ -481,7 +483,7 @@ fn a_mirrored_hollow_box_is_hollow() {
     let inner = cuboid([-1.0; 3], [1.0; 3]);
     hollow.faces.extend(inner.faces.iter().map(|&[a, b, c]| [a + 8, c + 8, b + 8]));
     hollow.vertices.extend(inner.vertices);
-    let mirror = vec![snell::scene::Transform::Scale([-1.0, 1.0, 1.0])];
+    let mirror = vec![Transform::Scale([-1.0, 1.0, 1.0])];
     for (transform, instances) in [(vec![], vec![]), (mirror.clone(), vec![]), (vec![], vec![mirror])] {
         let mut scene = furnace(1);
         glass(&mut scene, "glass", 1.5, 0);

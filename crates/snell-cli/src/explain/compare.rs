@@ -50,20 +50,23 @@ fn remove(scene: &mut Scene, world: &World, object: &str) -> Result<(), Failure>
         let help = format!("objects: {}", known.into_iter().take(30).collect::<Vec<_>>().join(", "));
         return Err(Failure::new(USAGE, Report::error(format!("no object is called `{object}`")).help(help)));
     }
-    // Objects without a name are called by their place in the list.
-    let is = |name: Option<&String>, kind: &str, i: usize| {
-        name.map_or_else(|| format!("{kind} {}", i + 1) == object, |name| name == object)
+    // What has no name keeps the one that its place in the list gives it.
+    let name = |name: &mut Option<String>, kind: &str, i: usize| {
+        name.get_or_insert_with(|| format!("{kind} {}", i + 1));
     };
-    let mut i = 0;
-    scene.spheres.retain(|s| (!is(s.name.as_ref(), "sphere", i), i += 1).0);
-    i = 0;
-    scene.meshes.retain(|m| (!is(m.name.as_ref().or(m.file.as_ref()), "mesh", i), i += 1).0);
-    i = 0;
-    scene.planes.retain(|p| (!is(p.name.as_ref(), "plane", i), i += 1).0);
-    i = 0;
-    scene.boxes.retain(|b| (!is(b.name.as_ref(), "box", i), i += 1).0);
-    i = 0;
-    scene.lathes.retain(|l| (!is(l.name.as_ref(), "lathe", i), i += 1).0);
+    for (i, mesh) in scene.meshes.iter_mut().enumerate() {
+        mesh.name = mesh.name.take().or_else(|| mesh.file.clone());
+        name(&mut mesh.name, "mesh", i);
+    }
+    scene.spheres.iter_mut().enumerate().for_each(|(i, sphere)| name(&mut sphere.name, "sphere", i));
+    scene.planes.iter_mut().enumerate().for_each(|(i, plane)| name(&mut plane.name, "plane", i));
+    scene.boxes.iter_mut().enumerate().for_each(|(i, cuboid)| name(&mut cuboid.name, "box", i));
+    scene.lathes.iter_mut().enumerate().for_each(|(i, lathe)| name(&mut lathe.name, "lathe", i));
+    scene.spheres.retain(|sphere| sphere.name.as_deref() != Some(object));
+    scene.meshes.retain(|mesh| mesh.name.as_deref() != Some(object));
+    scene.planes.retain(|plane| plane.name.as_deref() != Some(object));
+    scene.boxes.retain(|cuboid| cuboid.name.as_deref() != Some(object));
+    scene.lathes.retain(|lathe| lathe.name.as_deref() != Some(object));
     Ok(())
 }
 

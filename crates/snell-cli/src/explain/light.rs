@@ -35,7 +35,9 @@ pub fn text(explanation: &Explanation, name: &str) -> Result<String, Failure> {
                     writeln!(text, "blocked by {blocker} at ({x:.4}, {y:.4}, {z:.4}){under}")
                 }
                 _ if !light.facing => writeln!(text, "the surface faces away from it"),
-                _ if mean(light.transmittance) == 0.0 => writeln!(text, "its cone does not reach there"),
+                _ if mean(light.transmittance) == 0.0 => {
+                    writeln!(text, "nothing of it arrives: out of its cone, or absorbed on the way")
+                }
                 _ => {
                     let by = if through.is_empty() { String::new() } else { format!(" through {through}") };
                     let [d, h] = [light.diffuse, light.highlight].map(numbers);

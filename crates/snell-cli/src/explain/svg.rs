@@ -54,7 +54,7 @@ fn panel(nodes: &[ExplainedNode], node: &ExplainedNode) -> Option<String> {
     let hit: &ExplainedHit = node.hit.as_ref()?;
     let carries = |mirrored: bool| {
         let children = nodes.iter().filter(|n| n.parent == Some(node.id) && is_mirrored(node, n) == mirrored);
-        children.map(|n| mean(n.throughput)).sum::<f64>() / mean(node.throughput)
+        children.map(|n| mean(n.throughput)).sum::<f64>() / mean(hit.throughput)
     };
     let (mirrored, refracted) = (carries(true), carries(false));
     let [cx, cy] = MIDDLE;

@@ -47,11 +47,9 @@ pub fn text(explanation: &Explanation, args: &ExplainArgs) -> String {
             text.push('\n');
         }
         let tree = Tree::new(sample, total, args, explanation.transfer);
-        tree.node(&mut text, 0, "", "");
-        let hidden = sample.nodes.iter().filter(|node| node.ended != Some(Ending::Missed)).count();
-        let shown = tree.shown.iter().filter(|shown| **shown).count();
-        if hidden > shown {
-            let _ = writeln!(text, "  … {} more rays; --top N and --depth N show more", hidden - shown);
+        let hidden = sample.nodes.len() - tree.node(&mut text, 0, "", "");
+        if hidden > 0 {
+            let _ = writeln!(text, "  … {hidden} more rays; --top N and --depth N show more");
         }
     }
     text
@@ -105,11 +103,13 @@ impl<'a> Tree<'a> {
     }
 
     fn share(&self, color: [f64; 3]) -> String {
-        if self.total > 0.0 { percent(mean(color) / self.total) } else { "0 %".to_owned() }
+        if self.total == 0.0 { "0 %".to_owned() } else { percent(mean(color) / self.total) }
     }
 
-    fn node(&self, text: &mut String, id: usize, before: &str, below: &str) {
-        let Some(node) = self.sample.nodes.get(id) else { return };
+    /// Writes a ray and those below it; returns how many.
+    fn node(&self, text: &mut String, id: usize, before: &str, below: &str) -> usize {
+        let Some(node) = self.sample.nodes.get(id) else { return 0 };
+        let mut count = 1;
         let _ = writeln!(
             text,
             "{before}{:>6}  {}{}",
@@ -127,8 +127,9 @@ impl<'a> Tree<'a> {
         for (place, &child) in below_it.iter().enumerate() {
             let last = place + 1 == below_it.len();
             let (fork, bar) = if last { ("└─", "  ") } else { ("├─", "│ ") };
-            self.node(text, child, &format!("{below}{fork}"), &format!("{below}{bar}"));
+            count += self.node(text, child, &format!("{below}{fork}"), &format!("{below}{bar}"));
         }
+        count
     }
 
     /// The children that are shown, the strongest first.
@@ -158,7 +159,7 @@ fn lights(local: &snell::explain::LocalLight) -> String {
         if let Some(blocker) = &light.blocked_by {
             parts.push(format!("{name} is behind {blocker}"));
         } else if mean(light.transmittance) == 0.0 {
-            parts.push(format!("{name} shines elsewhere"));
+            parts.push(format!("nothing of {name} arrives"));
         } else {
             let through =
                 if light.through.is_empty() { String::new() } else { format!(" through {}", light.through.join(", ")) };

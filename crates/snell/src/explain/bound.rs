@@ -24,7 +24,7 @@ pub(super) fn per_throughput(world: &World) -> Rgb {
     let sum = |a: Rgb, b: Rgb| Rgb::new(a.r + b.r, a.g + b.g, a.b + b.b);
     let largest = |a: Rgb, b: Rgb| Rgb::new(a.r.max(b.r), a.g.max(b.g), a.b.max(b.b));
     let lights = world.lights.iter().fold(Rgb::gray(0.0), |all, light| sum(all, size(light.color)));
-    let mut radiance = world.background.largest();
+    let mut radiance = size(world.background.largest());
     let mut gain = Rgb::gray(0.0);
     let model = world.render.integrator;
     let brightest = world.patterns.iter().fold(Rgb::gray(1.0), |most, pattern| largest(most, pattern.largest()));

@@ -102,7 +102,7 @@ pub struct ExplainedNode {
     pub eta: f64,
     /// The wavelength, if dispersion has split it.
     pub band_nm: Option<f64>,
-    /// What it can add to the sample for each unit of radiance, where it arrives, or starts if it was not followed.
+    /// What it can add to the sample for each unit of radiance, where it starts.
     pub throughput: [f64; 3],
     /// What it met.
     pub hit: Option<ExplainedHit>,
@@ -154,6 +154,8 @@ pub struct ExplainedHit {
     pub total_reflection: bool,
     /// The material.
     pub material: String,
+    /// The ray's throughput where it arrives: a medium may have absorbed some.
+    pub throughput: [f64; 3],
 }
 
 /// The light that a surface itself sends out, before opacity and throughput weigh it.
@@ -242,7 +244,7 @@ fn sample(names: &Names<'_>, bound: Rgb, tree: &RayTree) -> ExplainedSample {
             medium: names.medium(node.medium).to_owned(),
             eta: node.eta,
             band_nm: node.band.map(|band| names.world.bands[band as usize].wavelength_nm),
-            throughput: node.hit.as_ref().map_or(node.throughput, |hit| hit.throughput).to_array(),
+            throughput: node.throughput.to_array(),
             hit: node.hit.as_ref().map(|hit| explained(names, node, hit)),
             local: node.hit.as_ref().filter(|hit| hit.outer).map(|hit| local(names, hit)),
             contribution: node.contribution.to_array(),
@@ -292,6 +294,7 @@ fn explained(names: &Names<'_>, node: &Node, hit: &Hit) -> ExplainedHit {
         eta_behind: hit.eta[1],
         total_reflection,
         material: names.material(hit.material).to_owned(),
+        throughput: hit.throughput.to_array(),
     }
 }
 

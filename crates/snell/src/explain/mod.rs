@@ -56,8 +56,12 @@ impl<'a> Names<'a> {
         self.scene.materials.get_index(number as usize).map_or("?", |(name, _)| name.as_str())
     }
 
-    /// The medium of a solid, by one of its primitives.
-    pub fn medium(&self, primitive: Option<u32>) -> &'a str {
-        primitive.map_or(OUTSIDE, |primitive| self.object(primitive))
+    /// The medium of a solid, by its number: the object, or the material that interfaces speak of.
+    pub fn medium(&self, solid: Option<u32>) -> &'a str {
+        let solid = solid.and_then(|solid| self.world.solids.get(solid as usize));
+        solid.map_or(OUTSIDE, |solid| match solid.between_faces_of {
+            Some(material) => self.material(material),
+            None => self.object(solid.primitive),
+        })
     }
 }

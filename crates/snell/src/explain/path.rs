@@ -47,23 +47,24 @@ impl Path {
             std::iter::successors(Some(&tree.nodes[node]), |n| n.parent.map(|p| &tree.nodes[p])).collect();
         way.reverse();
         let mut legs: Vec<Leg> = Vec::new();
-        // Within an object that has been entered: what follows inside belongs to its leg.
-        let mut within: Option<&str> = None;
+        // The objects that have been entered, and their legs: what happens inside belongs to them.
+        let mut within: Vec<(&str, usize)> = Vec::new();
         for pair in way.windows(2) {
             let Some(hit) = &pair[0].hit else { continue };
             let object = names.object(hit.primitive);
             let refracts = pair[1].kind == RayKind::Refracted;
-            match (within, legs.last_mut()) {
-                // Against its wall from inside, or out of it.
-                (Some(entered), Some(Leg { how: How::Refract(inside), .. })) if entered == object && !hit.outer => {
-                    *inside += u32::from(!refracts);
-                    if refracts {
-                        within = None;
-                    }
+            let entered = within.iter().rposition(|(name, _)| *name == object).filter(|_| !hit.outer);
+            match entered.map(|at| (at, &mut legs[within[at].1].how)) {
+                // Out of it, or against its wall from inside.
+                Some((at, How::Refract(_))) if refracts => {
+                    within.remove(at);
                 }
+                Some((_, How::Refract(inside))) => *inside += 1,
                 _ => {
+                    if refracts && pair[1].medium.is_some() {
+                        within.push((object, legs.len()));
+                    }
                     let how = if refracts { How::Refract(0) } else { How::Mirror };
-                    within = pair[1].medium.filter(|_| refracts).map(|_| object);
                     legs.push(Leg { object: object.to_owned(), how });
                 }
             }
@@ -80,7 +81,8 @@ impl Path {
         if steps.first().is_some_and(|step| step == "camera") {
             steps.remove(0);
         }
-        let end = steps.pop().filter(|end| !end.contains('(')).ok_or_else(|| PathError(text.to_owned()))?;
+        let is_leg = |end: &str| end.ends_with("(mirror)") || (end.contains("(refract") && end.ends_with(')'));
+        let end = steps.pop().filter(|end| !is_leg(end)).ok_or_else(|| PathError(text.to_owned()))?;
         let leg = |step: String| {
             let (object, how) =
                 step.strip_suffix(')').and_then(|s| s.rsplit_once('(')).ok_or(PathError(step.clone()))?;
@@ -98,7 +100,13 @@ impl Path {
 
 /// Steps between arrows; or, where there is none, between spaces outside of brackets and quotes.
 fn split(text: &str) -> Vec<String> {
-    let clean = |step: &str| step.trim().replace(['"', '`'], "");
+    // Quotes around a name, perhaps with what happened there behind it.
+    let clean = |step: &str| {
+        let step = step.trim();
+        let quote = step.chars().next().filter(|c| ['"', '`'].contains(c));
+        let rest = quote.and_then(|quote| step[1..].split_once(quote).map(|(name, how)| format!("{name}{how}")));
+        rest.unwrap_or_else(|| step.to_owned())
+    };
     if text.contains('→') || text.contains("->") {
         return text.replace("->", "→").split('→').map(clean).filter(|s| !s.is_empty()).collect();
     }

@@ -67,14 +67,15 @@ pub(super) fn parts(names: &Names<'_>, trace: &PixelTrace) -> Vec<(Path, Rgb, (u
     }
     let mut parts: Vec<_> = parts.into_iter().map(|(path, (sum, first))| (path, sum, first)).collect();
     // Stable: of equally strong ones the one that comes first in the order of addition.
-    parts.sort_by(|a, b| b.1.mean().total_cmp(&a.1.mean()));
+    parts.sort_by(|a, b| b.1.mean().abs().total_cmp(&a.1.mean().abs()));
     parts
 }
 
 /// The sentence.
 pub(super) fn of(names: &Names<'_>, trace: &PixelTrace) -> String {
     let parts = parts(names, trace);
-    let total: f64 = parts.iter().map(|(_, sum, _)| sum.mean()).sum();
+    // Light may be negative, in the colours of single wavelengths.
+    let total: f64 = parts.iter().map(|(_, sum, _)| sum.mean().abs()).sum();
     let color = color_name(trace.radiance);
     let Some((strongest, sum, (sample, node))) = parts.first() else {
         return "Black because no ray of this pixel found any light.".to_owned();

@@ -5,7 +5,7 @@ use crate::film::Rgb;
 use crate::render::trace_pixel;
 use crate::scene::Scene;
 use crate::threads;
-use crate::trace::PixelTrace;
+use crate::trace::{PixelTrace, mean};
 use crate::world::World;
 use indexmap::IndexMap;
 use rayon::prelude::*;
@@ -53,23 +53,20 @@ fn rows<T: Send>(
 
 /// The paths of a pixel, each with what it adds, by the engine's order of addition.
 pub fn by_path(names: &Names<'_>, trace: &PixelTrace) -> Vec<(Path, Rgb)> {
-    let mut numbers: IndexMap<Path, u32> = IndexMap::new();
-    let of: Vec<Vec<u32>> = trace
-        .samples
-        .iter()
-        .map(|tree| {
-            let number = |(node, n): (usize, &crate::trace::Node)| {
-                if n.contribution == Rgb::gray(0.0) {
-                    return u32::MAX;
-                }
-                let next = numbers.len() as u32;
-                *numbers.entry(Path::of(names, tree, node)).or_insert(next)
-            };
-            tree.nodes.iter().enumerate().map(number).collect()
-        })
-        .collect();
-    let sum = |number: u32| trace.sum_of(|sample, node| of[sample][node] == number);
-    numbers.iter().map(|(path, &number)| (path.clone(), sum(number))).collect()
+    let mut sums: IndexMap<Path, Rgb> = IndexMap::new();
+    for tree in &trace.samples {
+        let mut of_sample: IndexMap<Path, Rgb> = IndexMap::new();
+        for (number, node) in tree.nodes.iter().enumerate().filter(|(_, n)| n.contribution != Rgb::gray(0.0)) {
+            let sum = of_sample.entry(Path::of(names, tree, number)).or_default();
+            *sum = *sum + node.contribution;
+        }
+        for (path, sample) in of_sample {
+            let sum = sums.entry(path).or_default();
+            *sum = *sum + sample;
+        }
+    }
+    let spp = trace.samples.len() as u32;
+    sums.into_iter().map(|(path, sum)| (path, if spp == 1 { sum } else { mean(sum, spp) })).collect()
 }
 
 /// Splits a picture by paths: the `most` strongest of them, and the rest.

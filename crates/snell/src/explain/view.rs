@@ -4,7 +4,7 @@ use super::Names;
 use crate::geometry::Bounds;
 use serde::Serialize;
 
-/// Of an object with more triangles only the box is drawn.
+/// Triangles that are drawn; of objects beyond them, only the box.
 const MOST_FACES: u32 = 40_000;
 
 /// A scene to look at.
@@ -70,7 +70,7 @@ impl ViewScene {
             // What is wholly transparent is still to be seen.
             (if own.mean() > 0.0 { color } else { [0.7, 0.8, 0.85] }, m.ko.mean().clamp(0.15, 1.0))
         };
-        let (mut spheres, mut meshes) = (Vec::new(), Vec::new());
+        let (mut spheres, mut meshes, mut room) = (Vec::new(), Vec::new(), MOST_FACES);
         for object in world.objects.iter().filter(|object| object.count > 0) {
             let (color, opacity) = look(object.first);
             let name = object.name.clone();
@@ -79,12 +79,13 @@ impl ViewScene {
                 continue;
             }
             let corners = (object.first..object.first + object.count).flat_map(|p| world.corners(p as usize));
-            let (vertices, faces): (Vec<f64>, Vec<u32>) = if object.count > MOST_FACES {
+            let (vertices, faces): (Vec<f64>, Vec<u32>) = if object.count > room {
                 let corners = Bounds::of(corners).corners();
                 let sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
                 let faces = sides.iter().flat_map(|&[a, b, c, d]| [a, b, c, a, c, d]).collect();
                 (corners.iter().flat_map(|p| [p.x, p.y, p.z]).collect(), faces)
             } else {
+                room -= object.count;
                 (corners.flat_map(|p| [p.x, p.y, p.z]).collect(), (0..3 * object.count).collect())
             };
             meshes.push(ViewMesh { name, vertices, faces, color, opacity });

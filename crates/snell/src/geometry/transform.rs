@@ -76,7 +76,13 @@ impl Affine {
     pub fn turn_normal_back(&self, n: Vec3) -> Vec3 {
         let [x, y, z] = self.rows;
         let across = x * n.x + y * n.y + z * n.z;
-        if x.dot(y.cross(z)) < 0.0 { -across } else { across }
+        if self.mirrors() { -across } else { across }
+    }
+
+    /// Is the image of a body its mirror image, so that its faces look the other way?
+    pub fn mirrors(&self) -> bool {
+        let [x, y, z] = self.rows;
+        x.cross(y).dot(z) < 0.0
     }
 
     /// The map that undoes this one; `None` where there is none, or none with finite numbers.

@@ -53,7 +53,7 @@ impl Observer for () {
 }
 
 /// The mean of so many samples, from their sum.
-pub(super) fn mean(sum: Rgb, spp: u32) -> Rgb {
+pub(crate) fn mean(sum: Rgb, spp: u32) -> Rgb {
     let share = |sum: f64| sum / f64::from(spp);
     Rgb::new(share(sum.r), share(sum.g), share(sum.b))
 }

@@ -110,8 +110,8 @@ impl<G: Generation> Kernel for FindInterfaces<'_, '_, G> {
                 }
             }
             for ray in ones(all & !met) {
-                // Every solid ends somewhere: a ray that leaves the scene in one has missed its way out.
-                if index(ways.before[ray]) as u32 != OUTSIDE {
+                // Every body ends somewhere: a ray that leaves the scene in one has missed its way out.
+                if media.within_a_body(index(ways.before[ray]) as u32) {
                     statistics.stray.add(rays.pixel(first + ray));
                 }
                 (packet.t[ray], packet.primitive[ray]) = (f64::INFINITY, SKY);
@@ -146,11 +146,17 @@ fn ones(mut bits: u64) -> impl Iterator<Item = usize> {
     })
 }
 
-/// Does a ray that goes on behind a thin face, in its plane, only meet another one of the same plane there? Between them is
-/// nothing but rounding.
+/// Does a ray that goes on behind a thin face only meet the same pane again? Between two faces of one plane is nothing but rounding;
+/// at an edge the ray starts beside its face, and may meet the next one, though it has been through.
 fn leaves_pane(world: &World, packet: &Packet, ray: usize) -> bool {
     let (t, source, primitive) = (packet.t[ray], packet.source[ray], packet.primitive[ray]);
-    source >= 0.0 && t <= world.clearance && world.is_thin(index(primitive)) && world.is_thin(index(source))
+    if source < 0.0 || !world.is_thin(index(primitive)) || !world.is_thin(index(source)) {
+        return false;
+    }
+    // A pane shifts aside by its thickness at most; beyond an edge that is on its next face.
+    let within = world.object_of(index(primitive) as u32) == world.object_of(index(source) as u32);
+    let thickness = world.materials[world.material_of(index(source)) as usize].thickness.unwrap_or(0.0);
+    t <= world.clearance + if within { thickness } else { 0.0 }
 }
 
 impl Ways {
@@ -220,7 +226,7 @@ impl Ways {
         if media.top(before) == media.top(after) {
             self.before[ray] = f64::from(after);
             if after != before && media.overlap(before, after) {
-                let other = world.primitive_of(media.top(after));
+                let other = world.solids[media.top(after) as usize].primitive;
                 let (pixel, point) = (pixel as u64, origin + dir * t);
                 statistics.overlaps.add(Overlap { pixel, primitives: [primitive, other], point });
             }

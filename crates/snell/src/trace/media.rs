@@ -63,7 +63,7 @@ impl<'a> Media<'a> {
         media.intern(Vec::new());
         let camera = &world.camera;
         let near = Bounds::of(camera.outermost().into_iter().chain([camera.eye]));
-        if world.solids.iter().any(|solid| solid.bounds.meets(&near)) {
+        if world.solids.iter().any(|solid| solid.between_faces_of.is_some() || solid.bounds.meets(&near)) {
             media.eye = Some(media.around(camera.eye));
         }
         media
@@ -231,6 +231,12 @@ impl<'a> Media<'a> {
         let pane = Pane::<f64> { thickness, eta, sigma_a: material.absorption() };
         let cos_theta_i = world.geometric_normal(primitive, point).dot(way.dir).abs();
         world.lets_through(primitive, point) * pane.passage(cos_theta_i).transmittance
+    }
+
+    /// Is it in a solid with a surface of its own? What interfaces fill may be as wide as the sea.
+    pub fn within_a_body(&self, set: u32) -> bool {
+        let solids = &self.sets[set as usize].solids;
+        solids.iter().any(|&solid| self.world.solids[solid as usize].between_faces_of.is_none())
     }
 
     /// Is a ray in this solid?

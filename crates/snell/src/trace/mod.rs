@@ -27,7 +27,7 @@ mod statistics;
 mod tree;
 mod whitted;
 
-pub(crate) use generation::Tracer;
+pub(crate) use generation::{Tracer, mean};
 pub use queue::RayKind;
 pub(crate) use recorder::Recorder;
 pub use statistics::{LostLight, Overlap, Overlaps, RayCounts, Statistics, StrayExits};

@@ -6,12 +6,12 @@ use super::media::{Media, WHITE};
 use super::queue::{Generation, RayQueue};
 use super::shading::{ShadowRays, light_on};
 use super::tree::{Ended, Hit, Lit, Node, RayTree};
+use super::whitted;
 use crate::film::Rgb;
 use crate::geometry::Vec3;
 use crate::lanes::index;
 use crate::scene::{Integrator, Shadows};
 use crate::world::{LightSource, NO_SOLID, World};
-use std::collections::BTreeMap;
 
 /// Writes down every generation of a pixel.
 #[derive(Debug, Default)]
@@ -26,8 +26,6 @@ pub(crate) struct Recorder {
     lights: Vec<Vec<Lit>>,
     /// The ambient part of the local colours of this generation.
     ambient: Vec<Rgb>,
-    /// A primitive of each solid that has been met.
-    primitives: BTreeMap<u32, u32>,
 }
 
 impl Observer for Recorder {
@@ -43,7 +41,14 @@ impl Observer for Recorder {
             let batch = hits.batch::<f64>(world, row);
             let lit = shadow.is_lit(row);
             let (wi, distance) = light.seen_from(batch.point());
-            let facing = batch.active && batch.normal().dot(wi) > 0.0;
+            let mut facing = batch.active && batch.normal().dot(wi) > 0.0;
+            if world.render.integrator == Integrator::Whitted {
+                if !whitted::has_local_color(&batch) {
+                    // Clear surfaces do not ask for lights.
+                    continue;
+                }
+                facing = facing && batch.geometric_normal().dot(wi) > 0.0;
+            }
             let share = light.spot.as_ref().map_or(1.0, |spot| spot.share(wi));
             let [diffuse, highlight] =
                 if lit { light_on::<f64>(&batch, light, shadow, row) } else { [Rgb::black(); 2] };
@@ -109,8 +114,6 @@ impl Recorder {
         let ((origin, dir), load) = (rays.ways::<f64>(row), rays.loads::<f64>(row));
         let (set, band) = (index(load.medium) as u32, index(load.band) as u32);
         let solid = media.top(set);
-        let primitive = (solid != NO_SOLID)
-            .then(|| *self.primitives.entry(solid).or_insert_with(|| media.world().primitive_of(solid)));
         self.tree.nodes.push(Node {
             kind: rays.kind(row),
             depth: self.depth,
@@ -118,7 +121,7 @@ impl Recorder {
             origin,
             dir,
             band: Some(band).filter(|&band| band != WHITE),
-            medium: primitive,
+            medium: (solid != NO_SOLID).then_some(solid),
             eta: media.eta(set, band),
             throughput: load.weight.throughput(),
             hit: None,

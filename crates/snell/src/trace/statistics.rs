@@ -1,6 +1,7 @@
 //! What a render did: rays by kind and depth, and the light that was cut off.
 
 use crate::geometry::Vec3;
+use std::cmp::Ordering;
 
 /// Counts and losses of a render. Independent of threads, tiles and lanes.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -44,12 +45,10 @@ impl Overlaps {
 
     fn merge(&mut self, other: &Self) {
         self.count += other.count;
-        // Within a pixel the order is that of its rays, whoever traces them.
-        let later = |a: Overlap, b: Overlap| b.pixel < a.pixel;
-        self.first = match (self.first, other.first) {
-            (Some(a), Some(b)) if later(a, b) => Some(b),
-            (a, b) => a.or(b),
-        };
+        // Of one pixel the one of the smallest coordinates: in which order rays are traced does not matter.
+        let key = |o: &Overlap| (o.pixel, [o.point.x, o.point.y, o.point.z], o.primitives);
+        let before = |a: &Overlap, b: &Overlap| key(a).partial_cmp(&key(b)).unwrap_or(Ordering::Equal);
+        self.first = [self.first, other.first].into_iter().flatten().min_by(before);
     }
 }
 

@@ -20,7 +20,7 @@ pub struct Node {
     pub dir: Vec3,
     /// Which band of light, counted from violet; `None` for all of it.
     pub band: Option<u32>,
-    /// A primitive of the solid whose medium it travels in; `None` for the space between the objects.
+    /// The number of the solid whose medium it travels in; `None` for the space between the objects.
     pub medium: Option<u32>,
     /// The index of refraction there.
     pub eta: f64,
@@ -72,7 +72,7 @@ pub struct Hit {
     pub ambient: Rgb,
     /// The light that it sends out by itself, before anything weighs it.
     pub emission: Rgb,
-    /// What each light does there, in the order of the scene.
+    /// What each light does there, in the order of the scene; empty for a surface that has no colour of its own.
     pub lights: Vec<Lit>,
 }
 

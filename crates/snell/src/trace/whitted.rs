@@ -78,7 +78,8 @@ fn through_panes<L: Lanes>(hits: &Batch<'_, L>, media: &Media<'_>) -> (Passage<L
     );
     let sigma_a = hits.material_color(Material::absorption);
     let pane = Pane { thickness, eta, sigma_a };
-    (pane.passage(wo.dot(n)), pane.behind(hits.point(), n, wo))
+    // By the face itself: the new start stays in its plane.
+    (pane.passage(wo.dot(n)), pane.behind(hits.point(), ng, wo))
 }
 
 /// What is seen where nothing is.

@@ -2,7 +2,7 @@
 
 use super::solid::MeshSolids;
 use super::surface::{FLAT, Surfaces};
-use super::{NO_SOLID, Object, Solid, World};
+use super::{NO_PRIMITIVE, NO_SOLID, Object, Solid, World};
 use crate::geometry::mesh::MAX_SMOOTHED_VALENCE;
 use crate::geometry::solid::{Options, repair, structure};
 use crate::geometry::{Affine, Bounds, TriangleMesh, Vec3, triangle};
@@ -182,7 +182,17 @@ impl World {
     ) -> Result<(TriangleMesh, Sides), (String, String)> {
         let materials = (0..placed.faces.len()).map(|f| material_of(f, &placed));
         let mut media = materials.filter(|&m| self.refracts(m)).map(|m| self.medium_of(m));
-        let Some(medium) = media.next() else { return Ok((placed, Sides::None)) };
+        let Some(medium) = media.next() else {
+            if mesh.inside.is_some() && self.render.integrator == Integrator::Whitted {
+                let message = format!("`{name}` has media on both sides, but light does not go through its material");
+                return Err((
+                    message,
+                    "give the material a `ko` below 1 and no `thickness`, or remove `inside`".to_owned(),
+                ));
+            }
+            drop(media);
+            return Ok((placed, Sides::None));
+        };
         if mesh.inside.is_some() {
             drop(media);
             return self.interface(name, mesh, placed, material_ids);
@@ -228,7 +238,7 @@ impl World {
         &mut self,
         name: &str,
         mesh: &Mesh,
-        placed: TriangleMesh,
+        mut placed: TriangleMesh,
         material_ids: &MaterialIds<'_>,
     ) -> Result<(TriangleMesh, Sides), (String, String)> {
         let turned = structure(&placed).misoriented.count;
@@ -242,8 +252,12 @@ impl World {
             let material = name.and_then(|name| material_ids.get(name.as_str()));
             material.map_or(NO_SOLID, |&material| self.medium_between_faces(material, bounds))
         };
-        let sides = [side(mesh.inside.as_ref()), side(mesh.outside.as_ref())];
-        Ok((placed, Sides::Interface(sides)))
+        let [inside, outside] = [side(mesh.inside.as_ref()), side(mesh.outside.as_ref())];
+        if whole_map(&mesh.transform).mirrors() {
+            // In a mirror image faces look the other way.
+            (0..placed.faces.len()).for_each(|face| placed.turn(face));
+        }
+        Ok((placed, Sides::Interface([inside, outside])))
     }
 
     /// The solid of all that interfaces say to be filled with a material.
@@ -253,7 +267,14 @@ impl World {
         if known.is_none() {
             let medium = self.medium_of(material);
             let bounds = Bounds::EMPTY;
-            self.solids.push(Solid { medium, inward: false, touches: true, between_faces_of: Some(material), bounds });
+            self.solids.push(Solid {
+                medium,
+                inward: false,
+                touches: true,
+                between_faces_of: Some(material),
+                primitive: NO_PRIMITIVE,
+                bounds,
+            });
         }
         self.solids[number].bounds = self.solids[number].bounds.union(bounds);
         number as u32

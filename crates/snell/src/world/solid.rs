@@ -26,6 +26,8 @@ pub(crate) struct Solid {
     pub touches: bool,
     /// Is it no body, but all that interfaces say to be filled with this material?
     pub between_faces_of: Option<u32>,
+    /// One of its primitives.
+    pub primitive: u32,
     /// Its box.
     pub bounds: Bounds,
 }
@@ -71,7 +73,14 @@ impl MeshSolids {
         for (number, component) in number_of.iter_mut().zip(&report.components).filter(|(_, c)| !c.cavity) {
             *number = solids.len() as u32;
             let inward = (component.orientation == Orientation::Inward) != turned;
-            solids.push(Solid { medium, inward, touches: false, between_faces_of: None, bounds: component.bounds });
+            solids.push(Solid {
+                medium,
+                inward,
+                touches: false,
+                between_faces_of: None,
+                primitive: NO_PRIMITIVE,
+                bounds: component.bounds,
+            });
         }
         for i in 0..report.components.len() {
             if report.components[i].cavity {
@@ -122,11 +131,8 @@ fn why_not(report: &Report) -> String {
 impl Solid {
     /// The same solid where an instance stands.
     pub fn placed(&self, map: &Affine) -> Self {
-        let [x, y, z] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|v| map.turn(Vec3::<f64>::from(v)));
-        // A mirror turns faces inside out.
-        let mirrors = x.cross(y).dot(z) < 0.0;
         let bounds = Bounds::of(self.bounds.corners().map(|corner| map.apply(corner)));
-        Self { inward: self.inward != mirrors, bounds, ..self.clone() }
+        Self { inward: self.inward != map.mirrors(), bounds, ..self.clone() }
     }
 }
 
@@ -206,9 +212,20 @@ impl World {
         }
     }
 
-    /// A primitive of a solid's surface.
-    pub(crate) fn primitive_of(&self, solid: u32) -> u32 {
-        (0..self.primitive_count() as u32).find(|&p| self.solid_of(p as usize) == solid).unwrap_or(NO_PRIMITIVE)
+    /// Gives each solid one of its primitives, the first.
+    pub(super) fn find_primitives(&mut self) {
+        if self.solids.is_empty() {
+            return;
+        }
+        for primitive in 0..self.primitive_count() as u32 {
+            for solid in [self.solid_of(primitive as usize), self.front_of(primitive as usize)] {
+                if let Some(solid) = self.solids.get_mut(solid as usize)
+                    && solid.primitive == NO_PRIMITIVE
+                {
+                    solid.primitive = primitive;
+                }
+            }
+        }
     }
 
     /// The solid in front of a primitive, if that is an interface between two; or [`NO_SOLID`].

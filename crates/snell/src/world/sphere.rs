@@ -54,7 +54,14 @@ impl World {
             self.surfaces.solid_of.resize(id, NO_SOLID);
             self.surfaces.solid_of.push(self.solids.len() as u32);
             let (medium, bounds) = (self.medium_of(material), placed.bounds());
-            self.solids.push(Solid { medium, inward: false, touches: false, between_faces_of: None, bounds });
+            self.solids.push(Solid {
+                medium,
+                inward: false,
+                touches: false,
+                between_faces_of: None,
+                primitive: id as u32,
+                bounds,
+            });
         }
     }
 }

@@ -28,7 +28,7 @@ impl Pattern {
         Some(Self { colors, repeat: texture.repeat })
     }
 
-    /// The largest value of each channel.
+    /// The largest value of each channel, without its sign.
     pub fn largest(&self) -> Rgb {
         match &self.colors {
             Colors::Checker(colors) => brightest(colors.iter().copied()),
@@ -46,7 +46,7 @@ impl Pattern {
 }
 
 fn brightest(colors: impl Iterator<Item = Rgb>) -> Rgb {
-    colors.fold(Rgb::gray(0.0), |a, b| Rgb::new(a.r.max(b.r), a.g.max(b.g), a.b.max(b.b)))
+    colors.fold(Rgb::gray(0.0), |a, b| Rgb::new(a.r.max(b.r.abs()), a.g.max(b.g.abs()), a.b.max(b.b.abs())))
 }
 
 fn brightest_texel(image: &Image) -> Rgb {
@@ -77,7 +77,7 @@ impl Background {
         Some(Self::Image { image: sky.pixels.clone()?, turn, brightness: sky.brightness })
     }
 
-    /// The largest value of each channel.
+    /// The largest value of each channel, without its sign.
     pub fn largest(&self) -> Rgb {
         match self {
             Self::Color(color) => *color,

@@ -76,6 +76,7 @@ impl World {
         for (solid, touches) in self.solids.iter_mut().zip(touching) {
             solid.touches = touches;
         }
+        self.find_primitives();
         Ok(())
     }
 }

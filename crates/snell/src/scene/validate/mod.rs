@@ -193,6 +193,11 @@ fn only_whitted(scene: &Scene, found: &mut Findings) {
     unused(place!["background"], scene.background != Rgb::gray(0.0));
     unused(place!["render", "bands"], scene.render.bands != super::BANDS);
     unused(place!["render", "min_throughput"], scene.render.min_throughput != super::MIN_THROUGHPUT);
+    let sides = scene.meshes.iter().map(|m| &m.inside).enumerate().map(|(i, inside)| ("mesh", i, inside));
+    let sides = sides.chain(scene.planes.iter().enumerate().map(|(i, p)| ("plane", i, &p.inside)));
+    for (kind, i, inside) in sides.chain(scene.lathes.iter().enumerate().map(|(i, l)| ("lathe", i, &l.inside))) {
+        unused(place![kind, i, "inside"], inside.is_some());
+    }
     for (name, m) in &scene.materials {
         let at = |key: &str| place!["material", name.as_str(), key];
         unused(at("emission"), m.emission != Rgb::gray(0.0));

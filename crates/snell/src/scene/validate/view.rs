@@ -49,9 +49,9 @@ fn window(scene: &Scene, found: &mut Findings) {
         }
     }
     if let Some(fov) = camera.fov
-        && !(fov > 0.0 && fov < 180.0)
+        && !(1e-3..=179.0).contains(&fov)
     {
-        found.problem(at("fov"), format!("expected an angle above 0 and below 180 degrees, read {fov}"), "40 is usual");
+        found.problem(at("fov"), format!("expected an angle from 0.001 to 179 degrees, read {fov}"), "40 is usual");
     }
     match (camera.bounds, camera.fov) {
         (Some(_), Some(_)) => {
@@ -141,6 +141,11 @@ pub(super) fn sky(scene: &Scene, found: &mut Findings) {
     if sky.horizon.is_none() && sky.image.is_none() && sky.pixels.is_none() {
         let help = "add `horizon = [r, g, b]`, or `image = \"sky.exr\"`";
         found.problem(place!["sky"], "a sky needs a colour at the horizon, or a picture", help);
+    }
+    for (key, given) in [("brightness", sky.brightness != 1.0), ("rotate", sky.rotate != 0.0)] {
+        if given && sky.horizon.is_some() {
+            found.problem(at(key), format!("`{key}` is for pictures of a sky"), "remove it, or change the colours");
+        }
     }
     found.number(at("rotate"), sky.rotate);
     found.not_negative(at("brightness"), sky.brightness, "a brightness");
