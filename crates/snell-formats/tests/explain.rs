@@ -9,6 +9,7 @@ use snell::scene::{Integrator, Scene, Shadows};
 use snell::world::World;
 use snell_formats::builtin::SCENES;
 use snell_formats::{LoadOptions, load};
+use snell_test_scenes::glass;
 use std::collections::BTreeMap;
 
 /// All built-in scenes of a group at this size, in both models of light.
@@ -64,6 +65,33 @@ fn every_pixel_of_the_lecture_adds_up() {
 #[test]
 fn every_pixel_of_the_gallery_adds_up() {
     for (name, scene) in scenes("gallery", 48) {
+        adds_up(&name, &scene);
+    }
+}
+
+/// Thin panes, interfaces, patterns, spot lights, three samples; instances; glasses through each other; the course's models.
+#[test]
+fn every_pixel_of_hard_scenes_adds_up() {
+    let course = |integrator| {
+        let mut scene = load("lecture/default", &LoadOptions::default()).unwrap().scene;
+        (scene.render.size, scene.render.integrator) = ([48, 48], integrator);
+        scene
+    };
+    let mut all = vec![
+        ("windows".to_owned(), glass::windows()),
+        ("blocks".to_owned(), glass::blocks()),
+        ("bubbles".to_owned(), glass::bubbles()),
+        ("course2018".to_owned(), course(Integrator::Course2018)),
+        ("course2020".to_owned(), course(Integrator::Course2020)),
+    ];
+    for entry in std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/models")).unwrap() {
+        let path = entry.unwrap().path();
+        let mut scene = load(path.to_str().unwrap(), &LoadOptions::default()).unwrap().scene;
+        (scene.render.size, scene.render.spp) = ([48, 48], 2);
+        all.push((path.display().to_string(), scene));
+    }
+    assert!(all.len() == 10);
+    for (name, scene) in all {
         adds_up(&name, &scene);
     }
 }
