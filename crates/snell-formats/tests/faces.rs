@@ -19,20 +19,6 @@ fn pane(scene: &mut Scene, eta: f64, thickness: f64) {
     scene.materials.insert("pane".to_owned(), material);
 }
 
-fn plane(center: [f64; 3], normal: [f64; 3], size: [f64; 2], material: &str) -> Plane {
-    Plane {
-        name: None,
-        center,
-        normal,
-        size,
-        material: material.to_owned(),
-        inside: None,
-        outside: None,
-        transform: vec![],
-        instances: vec![],
-    }
-}
-
 /// One thin face does what two real ones do: the same line behind it, the same share through it and back.
 #[test]
 fn a_thin_face_is_a_slab_of_two() {
@@ -48,7 +34,7 @@ fn a_thin_face_is_a_slab_of_two() {
         let mut thin = furnace(1);
         pane(&mut thin, eta, thickness);
         thin.materials["pane"].sigma_a = absorption;
-        thin.planes.push(plane([0.0; 3], [0.0, 0.0, 1.0], [600.0, 600.0], "pane"));
+        thin.planes.push(Plane::new([0.0; 3], [0.0, 0.0, 1.0], [600.0, 600.0], "pane"));
         let (real, thin) = (tree(&real, origin, dir), tree(&thin, origin, dir));
         let ((exit, real_dir, _), (start, thin_dir, count)) = (straight_through(&real), straight_through(&thin));
         assert_eq!(count, 1);
@@ -78,7 +64,7 @@ fn a_thin_face_is_a_slab_of_two() {
 fn a_pane_is_met_once_wherever_its_triangles_end() {
     let mut scene = furnace(60);
     pane(&mut scene, 1.5, 0.4);
-    scene.planes.push(plane([0.1, 0.2, 0.0], [0.9, 0.3, 1.0], [40.0, 40.0], "pane"));
+    scene.planes.push(Plane::new([0.1, 0.2, 0.0], [0.9, 0.3, 1.0], [40.0, 40.0], "pane"));
     let world = World::new(&scene).unwrap();
     for pixel in 0..3600 {
         let (radiance, tree) = traced(&world, pixel % 60, pixel / 60);
@@ -95,8 +81,8 @@ fn a_white_furnace_with_thin_faces_stays_white() {
     glass(&mut scene, "water", 1.33, 0);
     ball(&mut scene, [-0.6, 0.0, 0.0], 1.2, "pane");
     ball(&mut scene, [0.8, 0.3, 0.0], 1.0, "water");
-    scene.planes.push(plane([0.5, 0.0, 0.0], [1.0, 0.2, 0.5], [1.0, 0.8], "pane"));
-    scene.planes.push(plane([0.0, -0.8, 0.5], [0.0, 1.0, 0.4], [3.0, 1.0], "pane"));
+    scene.planes.push(Plane::new([0.5, 0.0, 0.0], [1.0, 0.2, 0.5], [1.0, 0.8], "pane"));
+    scene.planes.push(Plane::new([0.0, -0.8, 0.5], [0.0, 1.0, 0.4], [3.0, 1.0], "pane"));
     for depth in [1, 3, 7] {
         scene.render.max_depth = depth;
         let world = World::new(&scene).unwrap();
@@ -118,8 +104,8 @@ fn a_pane_casts_a_faint_shadow() {
     scene.materials["pane"].sigma_a = Some(Rgb::new(0.0, 0.1, 0.2));
     let white = Material { kd: Rgb::gray(1.0), ..Material::default() };
     scene.materials.insert("white".to_owned(), white);
-    scene.planes.push(plane([0.0, -1.0, 0.0], [0.0, 1.0, 0.0], [20.0, 20.0], "white"));
-    scene.planes.push(plane([0.0, 3.0, 0.0], [0.0, 1.0, 0.0], [20.0, 20.0], "pane"));
+    scene.planes.push(Plane::new([0.0, -1.0, 0.0], [0.0, 1.0, 0.0], [20.0, 20.0], "white"));
+    scene.planes.push(Plane::new([0.0, 3.0, 0.0], [0.0, 1.0, 0.0], [20.0, 20.0], "pane"));
     scene.lights = vec![snell::scene::Light::from_direction([0.0, 1.0, 0.0], Rgb::gray(1.0))];
     let r: f64 = 0.04;
     for (channel, sigma_a) in
@@ -234,7 +220,7 @@ fn an_overlap_without_a_priority_is_told() {
 fn a_pane_has_no_back() {
     let mut scene = furnace(1);
     pane(&mut scene, 1.5, 0.1);
-    scene.planes.push(plane([0.0; 3], [0.0, 0.0, 1.0], [4.0, 4.0], "pane"));
+    scene.planes.push(Plane::new([0.0; 3], [0.0, 0.0, 1.0], [4.0, 4.0], "pane"));
     let of = |from: f64| {
         let tree = tree(&scene, [0.3, 0.1, from], [-0.2, 0.1, -from]);
         tree.nodes.iter().map(|n| (n.kind, n.throughput)).collect::<Vec<(RayKind, Rgb)>>()
@@ -249,7 +235,7 @@ fn a_camera_under_an_interface_is_under_water() {
     let mut scene = furnace(8);
     glass(&mut scene, "water", 1.33, 0);
     scene.materials["water"].sigma_a = Some(Rgb::gray(0.1));
-    let mut surface = plane([0.0; 3], [0.0, 1.0, 0.0], [100.0, 100.0], "water");
+    let mut surface = Plane::new([0.0; 3], [0.0, 1.0, 0.0], [100.0, 100.0], "water");
     surface.inside = Some("water".to_owned());
     scene.planes.push(surface);
     let tree = tree(&scene, [0.0, -3.0, 0.0], [0.0, 1.0, 0.0]);

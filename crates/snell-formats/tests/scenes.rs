@@ -24,20 +24,6 @@ fn dark_room(size: u32) -> Scene {
     scene
 }
 
-fn plane(center: [f64; 3], normal: [f64; 3], size: [f64; 2], material: &str) -> Plane {
-    Plane {
-        name: None,
-        center,
-        normal,
-        size,
-        material: material.to_owned(),
-        inside: None,
-        outside: None,
-        transform: vec![],
-        instances: vec![],
-    }
-}
-
 /// The lecture's pixels sit on the corners of the grid: the outermost rows are `fov` apart, and pixels are square.
 #[test]
 fn an_angle_of_view_lies_between_the_outermost_rows() {
@@ -161,7 +147,7 @@ fn a_spot_light_ends_at_its_cone() {
     let mut scene = dark_room(1);
     scene.ambient = Rgb::gray(0.0);
     paint(&mut scene, "white", Rgb::gray(1.0));
-    scene.planes.push(plane([0.0; 3], [0.0, 1.0, 0.0], [20.0, 20.0], "white"));
+    scene.planes.push(Plane::new([0.0; 3], [0.0, 1.0, 0.0], [20.0, 20.0], "white"));
     let mut lamp = Light::at([0.0, 2.0, 0.0], Rgb::gray(1.0));
     (lamp.target, lamp.cone) = (Some([0.0; 3]), Some(45.0));
     scene.lights = vec![lamp];
@@ -187,7 +173,7 @@ fn a_checkerboard_has_its_squares_where_it_should() {
     scene.textures.insert("board".to_owned(), texture);
     paint(&mut scene, "board", Rgb::gray(1.0));
     scene.materials["board"].texture = Some("board".to_owned());
-    scene.planes.push(plane([0.0; 3], [0.0, 0.0, 1.0], [8.0, 4.0], "board"));
+    scene.planes.push(Plane::new([0.0; 3], [0.0, 0.0, 1.0], [8.0, 4.0], "board"));
     for column in 0..4 {
         for row in 0..2 {
             let (x, y) = (-3.0 + 2.0 * f64::from(column), -1.0 + 2.0 * f64::from(row));
@@ -334,8 +320,8 @@ fn a_pattern_on_glass_dyes_shadows() {
         ..Material::default()
     };
     scene.materials.insert("stained".to_owned(), stained);
-    scene.planes.push(plane([0.0; 3], [0.0, 1.0, 0.0], [20.0, 20.0], "white"));
-    scene.planes.push(plane([0.0, 2.0, 0.0], [0.0, 1.0, 0.0], [4.0, 4.0], "stained"));
+    scene.planes.push(Plane::new([0.0; 3], [0.0, 1.0, 0.0], [20.0, 20.0], "white"));
+    scene.planes.push(Plane::new([0.0, 2.0, 0.0], [0.0, 1.0, 0.0], [4.0, 4.0], "stained"));
     scene.lights = vec![Light::from_direction([0.0, 1.0, 0.0], Rgb::gray(1.0))];
     let world_at = |x: f64| tree(&scene, [x, 1.0, 0.0], [0.0, -1.0, 0.0]).sum();
     assert_eq!((world_at(-1.0), world_at(1.0)), (colors[0], colors[1]));

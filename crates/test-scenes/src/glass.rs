@@ -127,15 +127,8 @@ pub fn windows() -> Scene {
     let turned =
         |degrees: f64, to: [f64; 3]| vec![Transform::Rotate { axis: [0.3, 1.0, 0.2], degrees }, Transform::Move(to)];
     let plane = |size: [f64; 2], material: &str, transform: Vec<Transform>| Plane {
-        name: None,
-        center: [0.0; 3],
-        normal: [0.0, 0.0, 1.0],
-        size,
-        material: material.to_owned(),
-        inside: None,
-        outside: None,
         transform,
-        instances: vec![],
+        ..Plane::new([0.0; 3], [0.0, 0.0, 1.0], size, material)
     };
     scene.planes.push(plane([60.0, 40.0], "board", turned(5.0, [50.0, 45.0, 20.0])));
     scene.planes.push(plane([14.0, 20.0], "pane", turned(50.0, [42.0, 45.0, 70.0])));

@@ -2,10 +2,10 @@
 //!
 //! Colours and throughputs are linear red, green, blue; angles are in degrees; lengths in scene units.
 
+use super::angles::{Angles, angles};
 use super::{Names, bound, sentence};
 use crate::film::Rgb;
 use crate::film::transfer::Transfer;
-use crate::geometry::Vec3;
 use crate::render::trace_pixel;
 use crate::scene::{Integrator, Scene};
 use crate::trace::{Ended, Hit, Node, PixelTrace, RayKind, RayTree};
@@ -116,17 +116,6 @@ pub struct ExplainedNode {
     pub ended: Option<Ending>,
     /// The most that it could still have added within ten more levels, if it was not followed.
     pub bound: Option<[f64; 3]>,
-}
-
-/// Angles between a ray and the normal.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Angles {
-    /// Before the surface.
-    pub before: f64,
-    /// Behind it, where anything goes through.
-    pub behind: Option<f64>,
-    /// Is everything reflected?
-    pub total_reflection: bool,
 }
 
 /// What a ray met.
@@ -262,21 +251,6 @@ fn kind(node: &Node) -> NodeKind {
         _ if node.medium.is_some() => NodeKind::Inside,
         RayKind::Mirror => NodeKind::Mirror,
         RayKind::Refracted => NodeKind::Refracted,
-    }
-}
-
-/// The angles at a hit, by Snell's law for the indices there.
-pub(super) fn angles(dir: Vec3, hit: &Hit) -> Angles {
-    let cos = (-dir.dot(hit.normal)).clamp(0.0, 1.0);
-    let [before, behind] = hit.eta;
-    let sin = ((1.0 - cos) * (1.0 + cos)).sqrt() * before / behind;
-    // Where both are the same nothing is behind, or nothing is bent.
-    let goes_through = before.to_bits() != behind.to_bits();
-    let degrees = |radians: f64| radians * (180.0 / std::f64::consts::PI);
-    Angles {
-        before: degrees(libm::acos(cos)),
-        behind: (goes_through && sin <= 1.0).then(|| degrees(libm::asin(sin))),
-        total_reflection: goes_through && sin > 1.0,
     }
 }
 

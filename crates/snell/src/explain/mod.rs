@@ -8,6 +8,7 @@
 //!
 //! Nothing here traces a ray or knows physics that the engine does not have: it names and adds up what was recorded.
 
+mod angles;
 mod bound;
 mod document;
 mod path;
@@ -16,8 +17,7 @@ mod survey;
 mod view;
 
 pub use document::{
-    Angles, Ending, ExplainedHit, ExplainedLight, ExplainedNode, ExplainedSample, Explanation, LocalLight, NodeKind,
-    explain,
+    Ending, ExplainedHit, ExplainedLight, ExplainedNode, ExplainedSample, Explanation, LocalLight, NodeKind, explain,
 };
 pub use path::{How, Leg, Path, PathError};
 pub use sentence::{color_name, percent};

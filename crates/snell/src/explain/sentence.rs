@@ -1,6 +1,6 @@
 //! What a person would say first about a pixel.
 
-use super::document::angles;
+use super::angles::angles;
 use super::path::SKY;
 use super::{How, Leg, Names, Path};
 use crate::film::Rgb;

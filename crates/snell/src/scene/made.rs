@@ -104,6 +104,21 @@ fn named(name: Option<&String>, kind: &str, index: usize) -> String {
 }
 
 impl Plane {
+    /// A plane without a name, in one place.
+    pub fn new(center: [f64; 3], normal: [f64; 3], size: [f64; 2], material: &str) -> Self {
+        Self {
+            name: None,
+            center,
+            normal,
+            size,
+            material: material.to_owned(),
+            inside: None,
+            outside: None,
+            transform: Vec::new(),
+            instances: Vec::new(),
+        }
+    }
+
     /// The mesh of the plane number `index` of a scene.
     pub(crate) fn mesh(&self, index: usize) -> Mesh {
         Mesh {

@@ -5,16 +5,17 @@ use super::hits::Hits;
 use super::interfaces::{FindInterfaces, Ways};
 use super::lecture::{self, Blend};
 use super::media::Media;
+use super::observer::Observer;
 use super::queue::{Generation, RayKind, RayQueue};
 use super::shading::{self, ShadowRays};
 use super::statistics::Statistics;
-use super::tree::Ended;
+use super::tree::{Ended, mean};
 use super::whitted;
 use crate::film::{Crop, Rgb};
 use crate::geometry::bvh::Packet;
 use crate::lanes::{Kernel, Lanes};
 use crate::scene::Integrator;
-use crate::world::{LightSource, World};
+use crate::world::World;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// A generation with more rays than this is split by pixels. It bounds the memory of the queues.
@@ -24,39 +25,6 @@ const GENERATION_BUDGET: usize = 1 << 16;
 /// what its generation takes of memory: a ray has 18 numbers of 8 bytes, and more children may be made before they are
 /// counted, twice as many, or one for each band of light.
 const RAYS_PER_PIXEL: u32 = 1 << 18;
-
-/// Sees every generation: first what light does at its hits, then its rays, hits and contributions, then what is not followed.
-pub(crate) trait Observer {
-    /// The local colours are those of the ambient light.
-    fn ambient(&mut self, hits: &Hits, world: &World);
-    /// What one light adds to them.
-    fn light(&mut self, world: &World, light: &LightSource, hits: &Hits, shadow: &ShadowRays);
-    fn generation(&mut self, rays: &impl Generation, hits: &Hits, media: &Media<'_>);
-    /// A child of the last generation is not followed.
-    fn ended(&mut self, children: &RayQueue, row: usize, why: Ended, media: &Media<'_>);
-    /// A sample of each pixel is done; what each of them lost.
-    fn sample(&mut self, lost: &[Rgb]);
-}
-
-/// Looks at nothing: plain rendering.
-impl Observer for () {
-    #[inline(always)]
-    fn ambient(&mut self, _hits: &Hits, _world: &World) {}
-    #[inline(always)]
-    fn light(&mut self, _world: &World, _light: &LightSource, _hits: &Hits, _shadow: &ShadowRays) {}
-    #[inline(always)]
-    fn generation(&mut self, _rays: &impl Generation, _hits: &Hits, _media: &Media<'_>) {}
-    #[inline(always)]
-    fn ended(&mut self, _children: &RayQueue, _row: usize, _why: Ended, _media: &Media<'_>) {}
-    #[inline(always)]
-    fn sample(&mut self, _lost: &[Rgb]) {}
-}
-
-/// The mean of so many samples, from their sum.
-pub(crate) fn mean(sum: Rgb, spp: u32) -> Rgb {
-    let share = |sum: f64| sum / f64::from(spp);
-    Rgb::new(share(sum.r), share(sum.g), share(sum.b))
-}
 
 /// A worker: it owns the queues, which are used again for every tile.
 #[derive(Debug)]

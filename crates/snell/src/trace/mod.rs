@@ -18,6 +18,7 @@ mod hits;
 mod interfaces;
 mod lecture;
 mod media;
+mod observer;
 mod pane;
 mod queue;
 mod recorder;
@@ -27,8 +28,9 @@ mod statistics;
 mod tree;
 mod whitted;
 
-pub(crate) use generation::{Tracer, mean};
+pub(crate) use generation::Tracer;
 pub use queue::RayKind;
 pub(crate) use recorder::Recorder;
 pub use statistics::{LostLight, Overlap, Overlaps, RayCounts, Statistics, StrayExits};
+pub(crate) use tree::mean;
 pub use tree::{Ended, Hit, Lit, Node, PixelTrace, RayTree};

@@ -1,8 +1,8 @@
 //! Writes down the rays of a pixel while the engine traces them: there is no second tracer.
 
-use super::generation::Observer;
 use super::hits::{Batch, Hits};
 use super::media::{Media, WHITE};
+use super::observer::Observer;
 use super::queue::{Generation, RayQueue};
 use super::shading::{ShadowRays, light_on};
 use super::tree::{Ended, Hit, Lit, Node, RayTree};

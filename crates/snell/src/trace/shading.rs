@@ -1,9 +1,9 @@
 //! The local colour of the hits: ambient light, then light by light, with shadows.
 
-use super::generation::Observer;
 use super::hits::{Batch, Hits};
 use super::lecture::T_MIN;
 use super::media::{Media, OUTSIDE, Way};
+use super::observer::Observer;
 use super::whitted;
 use crate::film::Rgb;
 use crate::geometry::Vec3;

@@ -1,6 +1,5 @@
 //! The ray tree of one pixel: what the engine's [`Recorder`](super::recorder::Recorder) writes down while it renders.
 
-use super::generation::mean;
 use super::queue::RayKind;
 use crate::film::Rgb;
 use crate::geometry::Vec3;
@@ -142,4 +141,10 @@ impl PixelTrace {
             count => mean(sums.fold(Rgb::black(), |sum, sample| sum + sample), count as u32),
         }
     }
+}
+
+/// The mean of so many samples, from their sum.
+pub(crate) fn mean(sum: Rgb, spp: u32) -> Rgb {
+    let share = |sum: f64| sum / f64::from(spp);
+    Rgb::new(share(sum.r), share(sum.g), share(sum.b))
 }
