@@ -20,5 +20,6 @@ from .tree import Hit, LightThere, Local, Node, RayTree, Sample
 __all__ = [
     "Box", "Camera", "Difference", "Globe", "Hit", "Lathe", "Light", "LightThere", "Local", "Material", "Mesh", "Node",
     "OpticsError", "Picture", "PictureError", "Plane", "RayTree", "Render", "RenderError", "Sample", "Scene",
-    "SceneError", "Sightings", "Sky", "SnellError", "SnellWarning", "Sphere", "Texture", "__version__", "optics", "scenes",
+    "SceneError", "Sightings", "Sky", "SnellError", "SnellWarning", "Sphere", "Texture", "__version__", "optics",
+    "scenes",
 ]  # fmt: skip

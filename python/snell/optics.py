@@ -1,7 +1,7 @@
 """The formulas of the library on numbers and NumPy arrays, which broadcast as usual.
 
-Angles are in degrees. ``eta`` is the index behind the surface divided by that before it, ``mu`` the other way round. What
-does not exist is NaN.
+Angles are in degrees. ``eta`` is the index behind the surface divided by that before it, ``mu`` the other way round.
+What does not exist is NaN.
 """
 
 from __future__ import annotations
