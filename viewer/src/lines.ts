@@ -23,6 +23,18 @@ export function rayLine(node: RayNode, reach: number): Line {
   return { from: node.origin, to: along(node.origin, node.dir, length), open: true };
 }
 
+/**
+ * From where a ray met something to where the next one starts, if that is elsewhere: the lecture's model goes through a ball in
+ * one step, and a thin pane shifts what goes through.
+ */
+export function stepLine(parent: RayNode, node: RayNode): Line | null {
+  if (parent.hit === null) return null;
+  const from = parent.hit.point;
+  const step = Math.hypot(...from.map((x, axis) => x - node.origin[axis]!));
+  // Further away than rounding, whatever the scale of the scene.
+  return step > 1e-6 * Math.max(...from.map(Math.abs), parent.hit.t) ? { from, to: node.origin, open: false } : null;
+}
+
 /** From the end of a ray to the lights that its surface faces, or to what blocks them. */
 export function shadowLines(node: RayNode, reach: number): ShadowLine[] {
   const { hit, local } = node;

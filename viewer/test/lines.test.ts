@@ -1,5 +1,5 @@
 import { expect, test } from 'vitest';
-import { lineOpacity, lineWidth, rayLine, shadowLines } from '../src/lines';
+import { lineOpacity, lineWidth, rayLine, shadowLines, stepLine } from '../src/lines';
 import type { LightAtHit } from '../src/data';
 import { glass, ray } from './fixture';
 
@@ -9,6 +9,13 @@ test('rays end where they hit, in the open, or as a stub', () => {
   expect(rayLine(ray({ hit, ended: null }), 8)).toEqual({ from: [0, 0, 0], to: [0, 0, -5], open: false });
   expect(rayLine(ray({ ended: 'missed' }), 8)).toEqual({ from: [0, 0, 0], to: [0, 0, -8], open: true });
   expect(rayLine(ray({ ended: 'depth' }), 8)).toEqual({ from: [0, 0, 0], to: [0, 0, -2], open: true });
+});
+
+test('what a model goes through in one step is a line of its own', () => {
+  const parent = ray({ hit });
+  expect(stepLine(parent, ray({ origin: [0, 0, -7] }))).toEqual({ from: [0, 0, -5], to: [0, 0, -7], open: false });
+  expect(stepLine(parent, ray({ origin: [1e-12, 0, -5] }))).toBeNull();
+  expect(stepLine(ray({}), ray({ origin: [0, 0, -7] }))).toBeNull();
 });
 
 test('shadow rays go to the light, or to what blocks it', () => {

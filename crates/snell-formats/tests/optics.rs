@@ -4,13 +4,14 @@
 
 mod common;
 
-use common::{ball, furnace, glass, mesh, picture, straight_through, traced, tree};
+use common::{alike, ball, furnace, glass, mesh, picture, straight_through, traced, tree};
 use snell::film::Rgb;
-use snell::geometry::{TriangleMesh, Vec3};
-use snell::scene::{Material, Scene, Shadows};
+use snell::geometry::{Affine, TriangleMesh, Vec3};
+use snell::scene::{Lathe, Material, Scene, Shadows, Transform};
 use snell::trace::RayKind;
 use snell::world::World;
-use snell_test_scenes::glass::{blocks, bubbles, cuboid, marbles};
+use snell_test_scenes::brilliant::Cut;
+use snell_test_scenes::glass::{blocks, bubbles, cuboid, marbles, windows};
 use snell_test_scenes::lecture;
 use std::sync::Arc;
 
@@ -32,7 +33,27 @@ fn a_white_furnace_stays_white() {
     mesh(&mut boxes, cuboid([0.0, -1.0, -1.0], [1.5, 1.0, 1.0]), "diamond");
     mesh(&mut boxes, cuboid([-1.0, -0.5, -0.5], [0.7, 2.0, 0.5]), "water");
     ball(&mut boxes, [-1.0, 0.0, 0.0], 0.5, "diamond");
-    for scene in [balls, boxes] {
+    // Round and smoothed, many-faced, turned and repeated.
+    let mut shapes = furnace(24);
+    shapes.materials = balls.materials.clone();
+    let smooth = Lathe {
+        name: None,
+        profile: vec![[0.0, -1.5], [1.2, -1.3], [0.4, 0.0], [1.3, 1.2], [1.1, 1.2], [0.3, 0.2], [0.0, 0.2]],
+        segments: 17,
+        smooth_angle: 60.0,
+        material: "crown".to_owned(),
+        inside: None,
+        outside: None,
+        transform: vec![Transform::Rotate { axis: [1.0, 0.0, 0.3], degrees: 25.0 }],
+        instances: vec![
+            vec![Transform::Move([-1.0, 0.0, 0.0])],
+            vec![Transform::Scale([0.8, -0.8, 0.8]), Transform::Move([1.0, 0.3, 0.2])],
+        ],
+    };
+    shapes.lathes.push(smooth);
+    let stone = Cut::default().brilliant().solid.mesh();
+    mesh(&mut shapes, stone.transformed(&Affine::scaling(Vec3::new(3.0, 3.0, 3.0))), "diamond");
+    for scene in [balls, boxes, shapes] {
         for depth in [0, 1, 2, 5, 32] {
             let mut scene = scene.clone();
             scene.render.max_depth = depth;
@@ -71,9 +92,10 @@ fn index_1_is_invisible_to_the_last_bit() {
 /// Exact first: powers of two change exponents only.
 #[test]
 fn a_scene_scaled_by_a_power_of_two_gives_the_same_bits() {
-    for scene in [bubbles(), marbles(), blocks()] {
+    for scene in [bubbles(), marbles(), blocks(), windows()] {
         let mut scene = scene;
         scene.meshes.retain(|mesh| mesh.instances.is_empty());
+        scene.planes.retain(|plane| plane.instances.is_empty());
         let expected = picture(&scene);
         for exponent in [-20, 20] {
             let factor = libm::exp2(f64::from(exponent));
@@ -86,17 +108,17 @@ fn a_scene_scaled_by_a_power_of_two_gives_the_same_bits() {
 /// By any other factor, or far away, the same picture but for a few pixels at silhouettes.
 #[test]
 fn a_scene_scaled_or_moved_is_the_same_picture() {
-    let mut scene = blocks();
-    scene.meshes.retain(|mesh| mesh.instances.is_empty());
-    // From where no ray runs along the planes in which faces meet.
-    scene.camera.eye = [53.1, 57.3, 99.7];
-    scene.render.size = [96, 96];
-    let expected = picture(&scene);
-    for (which, (factor, offset)) in [(1e6, 0.0), (1e-6, 0.0), (1.0, 1e5)].into_iter().enumerate() {
-        let found = picture(&scaled(&scene, |c| c * factor + offset, factor));
-        let close = |a: Rgb, b: Rgb| (a - b).to_array().iter().all(|d| d.abs() < 1e-9);
-        let same = found.pixels.iter().zip(&expected.pixels).filter(|(a, b)| close(**a, **b)).count();
-        assert!(same * 1000 >= expected.pixels.len() * 999, "{which}: {same} of {}", expected.pixels.len());
+    for (name, mut scene) in [("blocks", blocks()), ("windows", windows())] {
+        scene.meshes.retain(|mesh| mesh.instances.is_empty());
+        // From where no ray runs along the planes in which faces meet.
+        scene.camera.eye = [53.1, 57.3, 99.7];
+        scene.render.size = [96, 96];
+        let expected = picture(&scene);
+        for (factor, offset) in [(1e6, 0.0), (1e-6, 0.0), (1.0, 1e5)] {
+            let found = picture(&scaled(&scene, |c| c * factor + offset, factor));
+            let (same, all) = (alike(&found, &expected), expected.pixels.len());
+            assert!(same * 1000 >= all * 999, "{name} times {factor} plus {offset}: {same} of {all}");
+        }
     }
 }
 
@@ -107,9 +129,25 @@ fn scaled(scene: &Scene, map: impl Fn(f64) -> f64, factor: f64) -> Scene {
     scene.camera.bounds = scene.camera.bounds.map(|bounds| bounds.map(|b| b * factor));
     for light in &mut scene.lights {
         light.position = light.position.map(|p| p.map(&map));
+        light.target = light.target.map(|p| p.map(&map));
     }
+    let offset = map(0.0);
+    let place = |transform: &mut Vec<Transform>, instances: &mut Vec<Vec<Transform>>| {
+        let steps = [Transform::Scale([factor; 3]), Transform::Move([offset; 3])];
+        instances.iter_mut().for_each(|instance| instance.extend(steps.clone()));
+        if instances.is_empty() {
+            transform.extend(steps);
+        }
+    };
+    scene.planes.iter_mut().for_each(|p| place(&mut p.transform, &mut p.instances));
+    scene.boxes.iter_mut().for_each(|b| place(&mut b.transform, &mut b.instances));
+    scene.lathes.iter_mut().for_each(|l| place(&mut l.transform, &mut l.instances));
     for sphere in &mut scene.spheres {
-        (sphere.center, sphere.radius) = (sphere.center.map(&map), sphere.radius * factor);
+        if sphere.transform.is_empty() {
+            (sphere.center, sphere.radius) = (sphere.center.map(&map), sphere.radius * factor);
+        } else {
+            place(&mut sphere.transform, &mut sphere.instances);
+        }
     }
     for mesh in &mut scene.meshes {
         let mut geometry = mesh.geometry.as_deref().unwrap().clone();
@@ -120,6 +158,7 @@ fn scaled(scene: &Scene, map: impl Fn(f64) -> f64, factor: f64) -> Scene {
     }
     for material in scene.materials.values_mut() {
         material.sigma_a = material.sigma_a.map(|sigma| sigma * (1.0 / factor));
+        material.thickness = material.thickness.map(|thickness| thickness * factor);
         material.attenuation_distance = material.attenuation_distance.map(|distance| distance * factor);
     }
     scene

@@ -2,7 +2,7 @@
 
 import { Group } from 'three';
 import type { Vec3 } from '../data';
-import { along, lineOpacity, lineWidth, rayLine, shadowLines } from '../lines';
+import { along, lineOpacity, lineWidth, rayLine, shadowLines, stepLine } from '../lines';
 import type { TreeModel } from '../model';
 import type { Theme } from '../theme';
 import { type DrawnLine, LineSet, type ScreenUniforms } from './line-set';
@@ -46,6 +46,7 @@ export class Rays {
       ...[state.selected, state.hovered].flatMap((id) => (id === null ? [] : [this.halo(id, id === state.selected, theme)])),
       ...shaded.flatMap((id) => this.shadows(id, dim(id), theme)),
       ...this.model.roots.map((id) => this.fromEye(id, dim(id), theme)),
+      ...ids.flatMap((id) => this.step(id, dim(id), theme)),
       ...ids.map((id) => this.ray(id, id === state.selected, dim(id), theme)),
       ...(state.selected === null ? [] : this.normal(state.selected, theme)),
     ]);
@@ -69,6 +70,14 @@ export class Rays {
     const width = lineWidth(share) + (selected ? 1 : 0);
     const opacity = selected ? 1 : dim * lineOpacity(share);
     return { ...rayLine(node, this.reach), color: theme.rays[node.kind], width, opacity, arrow: true };
+  }
+
+  /** What a model of light goes through at once is drawn as a way inside. */
+  private step(id: number, dim: number, theme: Theme): DrawnLine[] {
+    const node = this.model.nodes[id]!;
+    const line = node.parent === null ? null : stepLine(this.model.nodes[node.parent]!, node);
+    const share = this.model.share(id);
+    return line === null ? [] : [{ ...line, color: theme.rays.inside, width: lineWidth(share), opacity: dim * lineOpacity(share) }];
   }
 
   private halo(id: number, selected: boolean, theme: Theme): DrawnLine {
