@@ -1,7 +1,7 @@
-"""What Python adds to a render: ``python benches/python.py``, with the package installed and ``SNELL`` naming the command.
+"""What Python adds to a render: ``python benches/python.py``, the package installed, the command in ``SNELL``.
 
-Prints the time of the lecture's picture by the command line's own clock, by Python's, and by the plain-Python oracle of the
-tests, each the best of several.
+Prints how long the lecture's picture takes by the command line's own clock, from Python, and in the slow tracer of the
+tests, which is plain Python and NumPy; each is the best of several.
 """
 
 from __future__ import annotations

@@ -123,10 +123,12 @@ class Scene(Value):
             For what JSON cannot say, and for materials that are not there.
         """
         del place  # it is the root
-        for key, kind in _TABLES.items():
-            self._check(key, getattr(self, "settings" if key == "render" else key), kind)
+        self._check("render", self.settings, Render)
+        self._check("camera", self.camera, Camera)
+        if self.sky is not None:
+            self._check("sky", self.sky, Sky)
         materials = self._materials()
-        table: dict[str, Any] = {"snell": 1, "ambient": 0, "background": 0, **super().plain()}
+        table: dict[str, Any] = {"snell": 1, **super().plain()}
         table = {("render" if key == "settings" else key): value for key, value in table.items()}
         table["material"] = {name: material.plain(f"material.{name}") for name, material in materials.items()}
         for key, kind in _LISTS.items():
@@ -145,7 +147,7 @@ class Scene(Value):
 
     @staticmethod
     def _check(place: str, value: object, kind: type[Value]) -> None:
-        if value is not None and type(value) is not kind:
+        if type(value) is not kind:
             raise SceneError([(place, f"expected a {kind.__name__}, read {value!r}", None)])
 
     def _materials(self) -> dict[str, Material]:

@@ -28,7 +28,7 @@ BAD: list[tuple[str, dict[str, Any]]] = [
     ("sphere[0].material", {"sphere": [Sphere((0, 0, 0), 1, "rde")]}),
     ("sphere[0]", {"sphere": [Light((0, 0, 0), 1)]}),
     ("sphere[0]", {"sphere": [42]}),
-    ("camera.eye", {"camera": Camera("eye", (0, 0, 0), (0, 1, 0), fov=40)}),
+    ("camera.eye", {"camera": Camera("eye", (0, 0, 0), (0, 1, 0), fov=40)}),  # type: ignore[arg-type]
     ("camera", {"camera": None}),
     ("camera.width", {"camera": Camera((0, 0, 5), (0, 0, 0), (0, 1, 0), fov=40, width=7, height=7)}),
     ("render.integrator", {"settings": Render("lectrue", (4, 4))}),
@@ -94,7 +94,7 @@ def test_pictures_say_what_they_have_not(tmp_path: Any) -> None:
     for part in [(0, 0, 17, 1), (0, 0, 0, 1), (-1, 0, 2, 2), (15, 11, 2, 1)]:
         with pytest.raises(snell.PictureError, match="do not lie within"):
             picture.crop(*part)
-    with pytest.raises(snell.PictureError, match="did you mean .png"):
+    with pytest.raises(snell.PictureError, match=r"did you mean \.png"):
         picture.save(tmp_path / "a.pgn")
     with pytest.raises(snell.PictureError, match="shape"):
         picture.diff(np.zeros((1, 1, 3)))

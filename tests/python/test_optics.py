@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -12,12 +15,13 @@ ETA = np.array([[0.5], [1 / 1.5], [1.0], [1.33], [2.42]])
 
 
 def test_arrays_have_the_bits_of_scalars() -> None:
-    for function, arguments in [
+    cases: list[tuple[Callable[..., Any], tuple[Any, ...]]] = [
         (optics.fresnel, (THETA, ETA)),
         (optics.critical_angle, (ETA,)),
         (optics.brewster_angle, (ETA,)),
         (optics.slab_offset, (2.0, THETA, ETA)),
-    ]:
+    ]
+    for function, arguments in cases:
         whole = np.asarray(function(*arguments))
         columns = [np.broadcast_to(a, whole.shape).ravel() for a in arguments]
         one_by_one = np.array([function(*map(float, row)) for row in zip(*columns, strict=True)])

@@ -31,7 +31,7 @@ def test_every_scene_comes_back(name: str, ending: str, tmp_path: Path) -> None:
     scene.save(tmp_path / f"again.{ending}")
     again = Scene.load(tmp_path / f"again.{ending}")
     assert again == scene
-    assert eval(repr(scene), vars(snell)) == scene
+    assert eval(repr(scene), dict(vars(snell))) == scene
     assert scene.replace() == scene
 
 
@@ -51,7 +51,7 @@ def test_meshes_are_arrays(tmp_path: Path) -> None:
     scene.save(tmp_path / "mesh.toml")
     assert Scene.load(tmp_path / "mesh.toml") == scene
     assert scene.render().array.tobytes() == film(str(tmp_path / "mesh.toml"), tmp_path).tobytes()
-    assert eval(repr(scene), vars(snell)) == scene
+    assert eval(repr(scene), dict(vars(snell))) == scene
 
 
 def test_models_are_found_from_where_a_scene_is_saved(tmp_path: Path) -> None:

@@ -34,7 +34,7 @@ pub fn problem(problem: &Problem) -> Finding {
 /// A report. In `ours`, the text that Python wrote in JSON, its place is a key; in a file a line and a column.
 pub fn report(report: &Report, ours: Option<&Source>) -> Finding {
     let place = report.place.as_ref().map(|(source, range)| match ours {
-        Some(ours) if ours.name == source.name => path(&steps_at(&source.text, range.start)),
+        Some(ours) if ours.name == source.name => path(&steps_at(&source.text, range.end.saturating_sub(1))),
         _ => {
             let (line, column) = source.line_column(range.start);
             format!("{}:{line}:{column}", source.name)

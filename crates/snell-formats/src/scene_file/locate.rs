@@ -46,12 +46,12 @@ pub fn steps_at(json: &str, offset: usize) -> Vec<Step> {
     let mut steps = Vec::new();
     let (collect, parse) = (jsonc_parser::CollectOptions::default(), jsonc_parser::ParseOptions::default());
     let root = jsonc_parser::parse_to_ast(json, &collect, &parse).ok().and_then(|parsed| parsed.value);
-    let around = |value: &Json<'_>| (value.range().start..=value.range().end).contains(&offset);
+    let around = |value: &Json<'_>| (value.range().start..value.range().end).contains(&offset);
     let mut at = root.as_ref();
     while let Some(value) = at {
         at = match value {
             Json::Object(object) => {
-                let found = object.properties.iter().find(|p| (p.range().start..=p.range().end).contains(&offset));
+                let found = object.properties.iter().find(|p| (p.range().start..p.range().end).contains(&offset));
                 steps.extend(found.map(|property| Step::from(property.name.as_str())));
                 found.map(|property| &property.value)
             }
@@ -94,7 +94,7 @@ mod tests {
             vec![Step::from("sphere"), Step::from(1), Step::from("center"), Step::from(2)],
         ] {
             let range = locate(text, Syntax::Json, &steps).unwrap();
-            assert_eq!(steps_at(text, range.start), steps);
+            assert_eq!([steps_at(text, range.start), steps_at(text, range.end - 1)], [steps.clone(), steps]);
         }
         assert_eq!(steps_at(text, text.len()), []);
         assert_eq!(steps_at("{", 0), []);
