@@ -75,7 +75,7 @@ def refract(wo: ArrayLike, n: ArrayLike, mu: ArrayLike) -> Floats:
     Examples
     --------
     >>> refract((0.6, 0, 0.8), (0, 0, 1), 1.0)
-    array([-0.6, -0. , -0.8])
+    array([-0.6,  0. , -0.8])
     >>> refract((0.8, 0, 0.6), (0, 0, 1), 1.5)
     array([nan, nan, nan])
     """
@@ -283,6 +283,6 @@ def glasses() -> list[str]:
     Examples
     --------
     >>> glasses()[:2]
-    ['N-BK7', 'N-SF11']
+    ['N-BK7', 'N-BAK1']
     """
     return _native.glass_names()

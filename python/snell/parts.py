@@ -185,14 +185,17 @@ class Mesh(Value):
             raise SceneError([(f"{place}.faces", "expected numbers of vertices, counted from 0", None)])
         return vertices, faces.astype(np.uint32)
 
+    def same_triangles(self, other: Mesh) -> bool:
+        """Say whether another mesh has the same triangles written out, or neither has any."""
+        mine, theirs = self.arrays("mesh"), other.arrays("mesh")
+        if mine is None or theirs is None:
+            return mine is theirs
+        return np.array_equal(mine[0], theirs[0]) and np.array_equal(mine[1], theirs[1])
+
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Mesh):
             return NotImplemented
-        mine, theirs = self.arrays("mesh"), other.arrays("mesh")
-        if mine is None or theirs is None:
-            return mine is theirs and self.plain() == other.plain()
-        same = np.array_equal(mine[0], theirs[0]) and np.array_equal(mine[1], theirs[1])
-        return same and self.plain() == other.plain()
+        return self.plain() == other.plain() and self.same_triangles(other)
 
     __hash__ = None
 

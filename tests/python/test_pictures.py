@@ -71,7 +71,7 @@ def test_files_are_those_of_the_command_line(tmp_path: Path) -> None:
         picture.save(tmp_path / f"python.{ending}")
         command("render", "--quiet", "lecture/default", "--size", "64x64", "-o", str(tmp_path / f"command.{ending}"))
         said = command("diff", str(tmp_path / f"python.{ending}"), str(tmp_path / f"command.{ending}"))
-        assert said.startswith("0 of 4096 pixels differ"), said
+        assert " 0 of 4096 pixels differ" in said, said
     assert np.load(tmp_path / "python.npy").tobytes() == picture.array.tobytes()
     picture.save(tmp_path / "deep.png", bits=16)
     assert (tmp_path / "deep.png").read_bytes()[24] == 16

@@ -39,7 +39,8 @@ def test_a_saved_scene_has_the_same_picture(tmp_path: Path) -> None:
     scene = snell.scenes["gallery/window"]
     scene.save(tmp_path / "window.toml")
     picture = scene.render(width=40)
-    assert picture.array.tobytes() == film(str(tmp_path / "window.toml"), tmp_path, "--size", "40x30").tobytes()
+    size = f"{picture.width}x{picture.height}"
+    assert picture.array.tobytes() == film(str(tmp_path / "window.toml"), tmp_path, "--size", size).tobytes()
 
 
 def test_meshes_are_arrays(tmp_path: Path) -> None:
