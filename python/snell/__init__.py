@@ -15,11 +15,12 @@ from .errors import OpticsError, PictureError, RenderError, SceneError, SnellErr
 from .parts import Box, Camera, Globe, Lathe, Light, Material, Mesh, Plane, Render, Sky, Sphere, Texture
 from .picture import Difference, Picture, Sightings
 from .scene import Scene, scenes
+from .sweep import sweep
 from .tree import Hit, LightThere, Local, Node, RayTree, Sample
 
 __all__ = [
     "Box", "Camera", "Difference", "Globe", "Hit", "Lathe", "Light", "LightThere", "Local", "Material", "Mesh", "Node",
     "OpticsError", "Picture", "PictureError", "Plane", "RayTree", "Render", "RenderError", "Sample", "Scene",
     "SceneError", "Sightings", "Sky", "SnellError", "SnellWarning", "Sphere", "Texture", "__version__", "optics",
-    "scenes",
+    "scenes", "sweep",
 ]  # fmt: skip
