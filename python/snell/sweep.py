@@ -19,8 +19,8 @@ _NOTES = "sweep.json"
 def sweep(scene: Scene, values: Mapping[str, Iterable[object]], out: str | os.PathLike[str], **how: Any) -> list[Path]:
     """Render a frame for each step of some values, and skip what is done already.
 
-    The folder remembers in ``sweep.json`` of what each frame was made, so that a sweep that was stopped goes on where it
-    was, and one of a changed scene starts again. ^C stops it, and raises KeyboardInterrupt.
+    The folder remembers in ``sweep.json`` of what each frame was made: a sweep that was stopped goes on where it was,
+    one of a changed scene starts again. ^C stops it, and raises KeyboardInterrupt.
 
     Parameters
     ----------
