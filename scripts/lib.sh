@@ -65,6 +65,14 @@ need_python() {
     fi
 }
 
+# The Python package of this clone with what its tests need, in an environment that is made anew.
+need_python_package() {
+    rm -rf target/python
+    python3 -m venv target/python || missing "Python's venv module" 'sudo apt-get install python3-venv'
+    target/python/bin/python -m pip install --quiet --disable-pip-version-check '.[test]' ||
+        missing 'the Python package and what its tests need' "target/python/bin/python -m pip install '.[test]'"
+}
+
 # Chromium shows pages to the tests. Debian's is installed where that needs no questions.
 need_chromium() {
     [ -x /usr/bin/chromium ] && return

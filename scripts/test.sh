@@ -12,7 +12,16 @@ stage() {
 }
 
 need_tools() { need_rust wasm32-unknown-unknown aarch64-unknown-linux-gnu && need_python && need_node && need_chromium; }
-oracle() { SNELL=$PWD/target/ci/snell .venv/bin/python -m pytest -q tests; }
+oracle() { SNELL=$PWD/target/ci/snell .venv/bin/python -m pytest -q tests --ignore tests/python; }
+# As on a fresh machine: an environment of its own, and what the package says that it needs.
+python_package() {
+    need_python_package
+    local python=$PWD/target/python/bin/python
+    "$python" -m mypy
+    "$python" -m ruff check --quiet
+    "$python" -m ruff format --check --quiet
+    SNELL=$PWD/target/ci/snell "$python" -m pytest -q --doctest-modules --pyargs snell tests/python
+}
 documentation() { RUSTDOCFLAGS='-D warnings' cargo doc --locked --quiet --workspace --no-deps --profile ci; }
 # An intrinsic that is a function of its own was called from code without the instructions of its width: each operation
 # becomes a call through memory, and nothing but the time tells. Only those on f64 are ours; memchr has such functions too.
@@ -55,6 +64,7 @@ stage 'build' cargo build --locked --quiet --workspace --profile ci
 stage 'kernels are inlined' kernels_are_inlined
 stage 'Rust tests' cargo test --locked --quiet --workspace --profile ci
 stage 'Python tests: the slow oracle, the schema' oracle
+stage 'the Python package' python_package
 stage 'the viewer, in Chromium' viewer
 stage 'documentation' documentation
 stage 'fuzz targets compile' cargo check --locked --quiet --manifest-path fuzz/Cargo.toml --target-dir target/fuzz

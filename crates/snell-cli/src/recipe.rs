@@ -140,60 +140,19 @@ impl Recipe {
         render.transfer = self.transfer.unwrap_or(render.transfer);
         render.rounding = self.rounding.unwrap_or(render.rounding);
         let size = self.size?;
-        let before = std::mem::replace(&mut render.size, size);
-        let bounds = scene.camera.bounds.as_mut().filter(|_| !self.stretch)?;
-        widen(bounds, before, size)
+        if self.stretch {
+            render.size = size;
+            return None;
+        }
+        let [left, right, bottom, top] = scene.resize(size)?;
+        Some(format!(
+            "{} x {} has another shape than the scene: to keep pixels square the bounds are widened to \
+             [{left:.4}, {right:.4}, {bottom:.4}, {top:.4}] (--stretch leaves them)",
+            size[0], size[1]
+        ))
     }
 }
 
 fn absolute(path: &Path) -> PathBuf {
     std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
-}
-
-/// Widens the bounds so that pixels are square, if the new size has neither the old size's shape nor the bounds'.
-fn widen(bounds: &mut [f64; 4], before: [u32; 2], size: [u32; 2]) -> Option<String> {
-    let [left, right, bottom, top] = *bounds;
-    let (width, height) = (right - left, top - bottom);
-    let [w, h] = size.map(f64::from);
-    let same_shape = u64::from(before[0]) * u64::from(size[1]) == u64::from(before[1]) * u64::from(size[0]);
-    let no_area = width == 0.0 || height == 0.0; // which is an error, and stays one
-    if same_shape || no_area || w * height.abs() == h * width.abs() {
-        return None;
-    }
-    // Pixels sit on the corners of the grid: n of them span n − 1 steps. A single pixel spans nothing.
-    let steps = size.map(|n| f64::from(n.max(2) - 1));
-    let step = (width.abs() / steps[0]).max(height.abs() / steps[1]);
-    let around = |a: f64, b: f64, span: f64| {
-        let (middle, half) = (f64::midpoint(a, b), span / 2.0 * (b - a).signum());
-        (middle - half, middle + half)
-    };
-    if step * steps[0] > width.abs() {
-        (bounds[0], bounds[1]) = around(left, right, step * steps[0]);
-    } else {
-        (bounds[2], bounds[3]) = around(bottom, top, step * steps[1]);
-    }
-    let [left, right, bottom, top] = *bounds;
-    Some(format!(
-        "{} x {} has another shape than the scene: to keep pixels square the bounds are widened to \
-         [{left:.4}, {right:.4}, {bottom:.4}, {top:.4}] (--stretch leaves them)",
-        size[0], size[1]
-    ))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn another_shape_shows_more_and_keeps_pixels_square() {
-        let mut bounds = [-2.0, 2.0, -2.0, 2.0];
-        assert!(widen(&mut bounds, [512, 512], [64, 64]).is_none());
-        assert!(widen(&mut bounds, [512, 512], [101, 51]).is_some());
-        assert_eq!(bounds, [-4.0, 4.0, -2.0, 2.0], "100 steps as wide as the 50 steps of 0.08 upwards");
-        let mut upright = [0.0, 2.0, 1.0, -1.0];
-        assert!(widen(&mut upright, [512, 512], [51, 101]).is_some());
-        assert_eq!(upright, [0.0, 2.0, 2.0, -2.0], "upside down stays upside down");
-        let mut wide = [-2.0, 2.0, -1.0, 1.0];
-        assert!(widen(&mut wide, [512, 512], [200, 100]).is_none(), "the bounds' own shape");
-    }
 }

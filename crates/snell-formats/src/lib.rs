@@ -13,6 +13,7 @@ pub mod driver;
 pub mod load;
 pub mod model;
 pub mod nff;
+pub mod page;
 pub mod picture;
 pub mod report;
 pub mod scene_file;

@@ -241,17 +241,22 @@ fn a_film_is_used_again() {
     }
 }
 
-#[test]
-fn a_scene_survives_being_written_to_the_bit() {
-    let scene = crowd(Integrator::Course2020);
-    let text = snell_formats::scene_file::to_text(&scene, Syntax::Json).unwrap();
-    assert!(parse(&Source::new("crowd", text), Syntax::Json).unwrap() == scene);
+/// With the triangles where a file has them.
+fn written_out(mut scene: Scene) -> Scene {
+    for mesh in &mut scene.meshes {
+        let Some(geometry) = mesh.geometry.take() else { continue };
+        mesh.vertices = geometry.vertices.iter().map(|&vertex| vertex.into()).collect();
+        mesh.faces.clone_from(&geometry.faces);
+    }
+    scene
 }
 
 #[test]
-fn a_scene_that_a_file_cannot_hold_is_not_written() {
-    for syntax in [Syntax::Toml, Syntax::Json] {
-        let refused = snell_formats::scene_file::to_text(&instances(0.0, true), syntax).unwrap_err();
-        assert!(refused.to_string().contains("mesh[0] has instances"), "{refused}");
+fn a_scene_survives_being_written_to_the_bit() {
+    for scene in [crowd(Integrator::Course2020), written_out(instances(0.0, true))] {
+        for syntax in [Syntax::Json, Syntax::Toml] {
+            let text = snell_formats::scene_file::to_text(&scene, syntax).unwrap();
+            assert!(parse(&Source::new("written", text), syntax).unwrap() == scene);
+        }
     }
 }

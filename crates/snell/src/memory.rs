@@ -1,7 +1,8 @@
 //! Large arrays of zeros.
 
-#![allow(unsafe_code, reason = "one call of the system, which says why it is sound")]
+#![allow(unsafe_code, reason = "two blocks, each of which says why it is sound")]
 
+use crate::film::Rgb;
 use bytemuck::Zeroable;
 
 /// So many zeros, or `None` where there is not so much memory.
@@ -29,9 +30,23 @@ fn ask_for_large_pages<T>(values: &[T]) {
     }
 }
 
+/// The numbers of colours, three for each, where they are.
+pub(crate) fn numbers(colors: &[Rgb]) -> &[f64] {
+    const { assert!(size_of::<Rgb>() == 3 * size_of::<f64>() && align_of::<Rgb>() == align_of::<f64>()) };
+    // SAFETY: an `Rgb` is three `f64` in a row (`repr(C)`, and nothing between them), so `colors` is three times as many,
+    // borrowed for as long. `bytemuck` cannot derive this for a generic type.
+    unsafe { std::slice::from_raw_parts(colors.as_ptr().cast(), colors.len() * 3) }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn colours_are_numbers_in_a_row() {
+        assert_eq!(numbers(&[Rgb::new(1.0, 2.0, 3.0), Rgb::gray(4.0)]), [1.0, 2.0, 3.0, 4.0, 4.0, 4.0]);
+        assert!(numbers(&[]).is_empty());
+    }
 
     #[test]
     fn there_are_as_many_zeros_as_asked_for_or_none() {

@@ -1,9 +1,9 @@
 //! `--set` and `--without`: the same pixel, before and after, branch by branch.
 
-use super::text::{head, mean, numbers, swatch};
-use super::{pixel, settings};
+use super::{colored, pixel, settings};
 use crate::args::ExplainArgs;
 use crate::say::{self, Failure, OrFail, Outcome, SCENE, USAGE};
+use snell::explain::text::{head, mean, numbers, swatch};
 use snell::explain::{Explanation, Names, Path, by_path};
 use snell::film::Rgb;
 use snell::render::trace_pixel;
@@ -27,14 +27,14 @@ pub fn run(before: &Explanation, world: &World, args: &ExplainArgs, [x, y]: [u32
         settings(&mut loaded, args);
         loaded
     };
-    let mut text = head(before);
+    let mut text = head(before, colored());
     let without = args.without.as_ref().map(|object| format!("without {object}"));
     let changes: Vec<String> = args.reading.set.iter().map(|change| format!("with {change}")).chain(without).collect();
     let _ = writeln!(
         text,
         "\n{}:\n{}{}\n{}\n",
         changes.join(", "),
-        swatch(after.color, after.transfer),
+        swatch(after.color, after.transfer, colored()),
         numbers(after.color),
         after.sentence
     );

@@ -1,8 +1,9 @@
 //! `--light`: why a light is, or is not, on what the pixel shows.
 
-use super::text::{head, mean, numbers};
+use super::colored;
 use crate::say::{Failure, USAGE};
 use snell::explain::Explanation;
+use snell::explain::text::{head, mean, numbers};
 use snell_formats::Report;
 use std::fmt::Write;
 
@@ -20,7 +21,7 @@ pub fn text(explanation: &Explanation, name: &str) -> Result<String, Failure> {
         };
         return Err(Failure::new(USAGE, Report::error(format!("no light is called `{name}`")).help(list)));
     }
-    let mut text = head(explanation);
+    let mut text = head(explanation, colored());
     text.push('\n');
     for sample in &explanation.samples {
         for node in &sample.nodes {

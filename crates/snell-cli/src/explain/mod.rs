@@ -2,18 +2,22 @@
 
 mod compare;
 mod find;
-mod html;
 mod light;
 mod svg;
-mod text;
 
 use crate::args::ExplainArgs;
 use crate::say::{self, FAILED, Failure, OrFail, Outcome, SCENE, USAGE};
-use snell::explain::{Explanation, explain};
+use snell::explain::text::{self, Style};
+use snell::explain::{Explanation, Names, explain};
 use snell::world::World;
 use snell_formats::load::Loaded;
+use snell_formats::page::page;
 use snell_formats::{LoadOptions, Report, disk, load};
+use std::io::IsTerminal;
 use std::path::Path;
+
+/// The viewer, built from `viewer/` by `npm run bundle`.
+const VIEWER: &str = include_str!("../../assets/snell-viewer.js");
 
 pub fn run(args: &ExplainArgs) -> Outcome {
     // What changes the scene for good; what `--set` and `--without` ask is what would be if.
@@ -37,7 +41,7 @@ pub fn run(args: &ExplainArgs) -> Outcome {
         return say::print(&light::text(&explanation, light)?);
     }
     if let Some(file) = &args.html {
-        return write(file, &html::page(&explanation, &world, &loaded));
+        return write(file, &page(&explanation, &Names { world: &world, scene: &loaded.scene }, VIEWER));
     }
     if let Some(file) = &args.svg {
         return write(file, &svg::picture(&explanation));
@@ -45,7 +49,15 @@ pub fn run(args: &ExplainArgs) -> Outcome {
     if args.json {
         return say::print(&format!("{}\n", json(&explanation)));
     }
-    say::print(&text::text(&explanation, args))
+    let plain = Style::default();
+    let style =
+        Style { top: args.top.unwrap_or(plain.top), depth: args.depth.unwrap_or(plain.depth), colored: colored() };
+    say::print(&text::text(&explanation, style))
+}
+
+/// May stdout be coloured? `NO_COLOR` says no (no-color.org).
+fn colored() -> bool {
+    std::io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|v| v.is_empty())
 }
 
 /// The settings of the command line.

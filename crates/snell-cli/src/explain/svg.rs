@@ -1,6 +1,6 @@
 //! `--svg`: the planes of incidence along the strongest way of a pixel, with normals, angles and critical angles.
 
-use super::text::{bytes, mean};
+use snell::explain::text::{bytes, mean};
 use snell::explain::{ExplainedHit, ExplainedNode, Explanation, NodeKind};
 use std::f64::consts::PI;
 use std::fmt::Write;

@@ -150,9 +150,23 @@ fn kind_of(path: &Path, text: &str) -> Kind {
 /// # Errors
 /// As [`load`].
 pub fn load_text(source: Source, kind: Kind, folder: &Path, options: &LoadOptions) -> Result<Loaded, Vec<Report>> {
+    load_with(source, kind, folder, options, |_| {})
+}
+
+/// The same for a scene of which something large is already in memory: `fill` puts it in before models are read.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_with(
+    source: Source,
+    kind: Kind,
+    folder: &Path,
+    options: &LoadOptions,
+    fill: impl FnOnce(&mut Scene),
+) -> Result<Loaded, Vec<Report>> {
     let mut warnings = Vec::new();
     let mut dialect = None;
-    let (scene, places) = match kind {
+    let (mut scene, places) = match kind {
         Kind::Driver => {
             let mut driver = driver::parse(&source, options.dialect)?;
             dialect = Some(driver.dialect);
@@ -169,6 +183,7 @@ pub fn load_text(source: Source, kind: Kind, folder: &Path, options: &LoadOption
         Kind::Toml => changed(source.clone(), Syntax::Toml, &options.set)?,
         Kind::Json => changed(source.clone(), Syntax::Json, &options.set)?,
     };
+    fill(&mut scene);
     let mut reader = ModelReader::new(folder, &options.search, dialect, warnings);
     let mut loaded = Loaded {
         scene,

@@ -69,6 +69,17 @@ pub fn write(path: &Path, format: Format, film: &Film, encoding: Encoding, recip
     })
 }
 
+/// A film as the bytes of a PNG of 8 bit, as [`write`] has it.
+///
+/// # Errors
+/// When it is too large for one.
+pub fn png_bytes(film: &Film, encoding: Encoding, recipe: Option<&str>) -> Result<Vec<u8>, Report> {
+    let mut bytes = Vec::new();
+    png::write(&mut bytes, film, encoding, false, recipe)
+        .map_err(|e| Report::error(format!("the picture cannot become a PNG: {e}")))?;
+    Ok(bytes)
+}
+
 /// Writes layers of a picture by their names into an EXR file, first the picture itself; each has the channels R, G and B. All
 /// have `size[0]·size[1]` pixels, row by row.
 ///

@@ -4,6 +4,7 @@ mod edit;
 mod locate;
 
 pub use edit::set;
+pub use locate::steps_at;
 
 use crate::report::{Report, Source, nearest};
 use locate::locate;
@@ -97,13 +98,9 @@ pub fn place(steps: &[Step], source: &Source, syntax: Syntax) -> Option<Range<us
 /// Writes a scene as text. Every number comes back to the bit.
 ///
 /// # Errors
-/// When a mesh stands in several places, which files cannot say yet.
+/// When a value has no form in a file.
 pub fn to_text(scene: &Scene, syntax: Syntax) -> Result<String, Report> {
     let failed = |e: String| Report::error(format!("this scene cannot be written: {e}"));
-    if let Some(i) = scene.meshes.iter().position(|mesh| !mesh.instances.is_empty()) {
-        let help = "write a mesh for each place, with the place in its `transform`";
-        return Err(failed(format!("mesh[{i}] has instances, and scene files have none")).help(help));
-    }
     match syntax {
         Syntax::Toml => {
             let mut document = toml_edit::ser::to_document(scene).map_err(|e| failed(e.to_string()))?;

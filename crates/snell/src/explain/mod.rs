@@ -1,7 +1,7 @@
 //! Why a pixel has the colour it has.
 //!
 //! ```text
-//! render::trace_pixel ─▶ PixelTrace ─┬─▶ Explanation   with names, angles, bounds: the JSON form
+//! render::trace_pixel ─▶ PixelTrace ─┬─▶ Explanation   with names, angles, bounds: the JSON form, and text
 //!  (the engine, recorded)            ├─▶ Path          camera → glass(refract) → green, of every contribution
 //!                                    └─▶ sentence      what a person would say first
 //! ```
@@ -14,6 +14,7 @@ mod document;
 mod path;
 mod sentence;
 mod survey;
+pub mod text;
 mod view;
 
 pub use document::{

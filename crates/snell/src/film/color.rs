@@ -10,6 +10,7 @@ use std::ops::{Add, Mul, Sub};
 
 /// Red, green and blue, linear, 1 for white. In a file: `0.5`, or `[0.5, 0.2, 0.1]`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Zeroable)]
+#[repr(C)] // three numbers in a row: see `memory::numbers`
 pub struct Rgb<L = f64> {
     /// Red.
     pub r: L,

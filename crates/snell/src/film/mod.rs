@@ -98,6 +98,29 @@ impl Film {
         self.finished.iter().all(|&yes| yes)
     }
 
+    /// Red, green and blue of all pixels, row by row, where they are.
+    pub fn numbers(&self) -> &[f64] {
+        memory::numbers(&self.pixels)
+    }
+
+    /// A part of it, as a film of its own; `None` where it does not lie within.
+    pub fn part(&self, part: Crop) -> Option<Self> {
+        let within = |start: u32, length: u32, first: u32, have: u32| {
+            let end = start.checked_add(length)?;
+            (length > 0 && start >= first && end <= first + have).then(|| (start - first) as usize)
+        };
+        let left = within(part.x, part.width, self.crop.x, self.crop.width)?;
+        let top = within(part.y, part.height, self.crop.y, self.crop.height)?;
+        let rows = (top..top + part.height as usize).map(|row| row * self.crop.width as usize + left);
+        let rows = rows.map(|start| start..start + part.width as usize);
+        Some(Self {
+            full_size: self.full_size,
+            crop: part,
+            pixels: rows.clone().flat_map(|row| self.pixels[row].iter().copied()).collect(),
+            finished: rows.flat_map(|row| self.finished[row].iter().copied()).collect(),
+        })
+    }
+
     /// The numbers of all pixels as little-endian bytes, NaN in one canonical form: equal pictures, equal bytes, on every
     /// machine. For hashing.
     pub fn bytes(&self) -> impl Iterator<Item = [u8; 8]> + '_ {
@@ -115,6 +138,22 @@ impl fmt::Debug for Film {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_part_is_cut_out() {
+        let crop = Crop { x: 10, y: 20, width: 3, height: 2 };
+        let mut film = Film::new([100, 100], crop).unwrap();
+        for (i, pixel) in film.pixels.iter_mut().enumerate() {
+            pixel.r = i as f64;
+        }
+        let part = film.part(Crop { x: 11, y: 21, width: 2, height: 1 }).unwrap();
+        assert_eq!(part.pixels.iter().map(|p| p.r).collect::<Vec<_>>(), [4.0, 5.0]);
+        assert_eq!((part.finished.len(), part.full_size), (2, [100, 100]));
+        for outside in [[9, 20, 1, 1], [10, 20, 4, 1], [10, 20, 0, 1], [10, 21, 1, 2], [12, 20, u32::MAX, 1]] {
+            let [x, y, width, height] = outside;
+            assert!(film.part(Crop { x, y, width, height }).is_none(), "{outside:?}");
+        }
+    }
 
     #[test]
     fn an_impossible_film_is_an_error_and_not_an_abort() {

@@ -67,3 +67,46 @@ impl Camera {
         upright.then(|| [u, w.cross(u), w])
     }
 }
+
+/// Bounds of a picture of another size, widened so that pixels are square; `None` if the size has the old one's shape, or the
+/// bounds' own.
+pub(super) fn widened(bounds: [f64; 4], before: [u32; 2], size: [u32; 2]) -> Option<[f64; 4]> {
+    let [left, right, bottom, top] = bounds;
+    let (width, height) = (right - left, top - bottom);
+    let [w, h] = size.map(f64::from);
+    let same_shape = u64::from(before[0]) * u64::from(size[1]) == u64::from(before[1]) * u64::from(size[0]);
+    let no_area = width == 0.0 || height == 0.0; // which is an error, and stays one
+    if same_shape || no_area || w * height.abs() == h * width.abs() {
+        return None;
+    }
+    // Pixels sit on the corners of the grid: n of them span n − 1 steps. A single pixel spans nothing.
+    let steps = size.map(|n| f64::from(n.max(2) - 1));
+    let step = (width.abs() / steps[0]).max(height.abs() / steps[1]);
+    let around = |a: f64, b: f64, span: f64| {
+        let (middle, half) = (f64::midpoint(a, b), span / 2.0 * (b - a).signum());
+        (middle - half, middle + half)
+    };
+    if step * steps[0] > width.abs() {
+        let (left, right) = around(left, right, step * steps[0]);
+        Some([left, right, bottom, top])
+    } else {
+        let (bottom, top) = around(bottom, top, step * steps[1]);
+        Some([left, right, bottom, top])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::widened;
+
+    #[test]
+    fn another_shape_shows_more_and_keeps_pixels_square() {
+        let square = [-2.0, 2.0, -2.0, 2.0];
+        assert_eq!(widened(square, [512, 512], [64, 64]), None);
+        // 100 steps as wide as the 50 steps of 0.08 upwards.
+        assert_eq!(widened(square, [512, 512], [101, 51]), Some([-4.0, 4.0, -2.0, 2.0]));
+        let upside_down = [0.0, 2.0, 1.0, -1.0];
+        assert_eq!(widened(upside_down, [512, 512], [51, 101]), Some([0.0, 2.0, 2.0, -2.0]), "and stays so");
+        assert_eq!(widened([-2.0, 2.0, -1.0, 1.0], [512, 512], [200, 100]), None, "the bounds' own shape");
+    }
+}

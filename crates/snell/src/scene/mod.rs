@@ -124,6 +124,15 @@ impl Scene {
             lathes: Vec::new(),
         }
     }
+
+    /// Gives the picture another size. Where that is of another shape, the camera's bounds are widened to keep pixels square,
+    /// and come back.
+    pub fn resize(&mut self, size: [u32; 2]) -> Option<[f64; 4]> {
+        let before = std::mem::replace(&mut self.render.size, size);
+        let bounds = self.camera.bounds.as_mut()?;
+        *bounds = camera::widened(*bounds, before, size)?;
+        Some(*bounds)
+    }
 }
 
 fn is_black(color: &Rgb) -> bool {

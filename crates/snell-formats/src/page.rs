@@ -1,15 +1,10 @@
-//! `--html`: one file with the tree and the rays in 3D, which needs nothing else.
+//! The page that explains a pixel: one file with the tree and the rays in 3D, which needs nothing else.
 
 use snell::explain::{Explanation, Names, ViewScene};
-use snell::world::World;
-use snell_formats::load::Loaded;
 
-/// The viewer, built from `viewer/` by `npm run bundle`.
-const VIEWER: &str = include_str!("../../assets/snell-viewer.js");
-
-/// A page that opens from disk.
-pub fn page(explanation: &Explanation, world: &World, loaded: &Loaded) -> String {
-    let scene = ViewScene::of(&Names { world, scene: &loaded.scene });
+/// A page that opens from disk. `viewer` is the script that `viewer/` is built into.
+pub fn page(explanation: &Explanation, names: &Names<'_>, viewer: &str) -> String {
+    let scene = ViewScene::of(names);
     // Nothing in a text may end the script that holds it.
     let data = |json: serde_json::Result<String>| json.unwrap_or_default().replace('<', "\\u003c");
     let (scene, tree) = (data(serde_json::to_string(&scene)), data(serde_json::to_string(explanation)));
@@ -18,7 +13,7 @@ pub fn page(explanation: &Explanation, world: &World, loaded: &Loaded) -> String
     format!(
         "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{title}</title>\n\
-         <style>body {{ margin: 0 }}</style>\n<div id=\"snell\"></div>\n<script>{VIEWER}</script>\n\
+         <style>body {{ margin: 0 }}</style>\n<div id=\"snell\"></div>\n<script>{viewer}</script>\n\
          <script>\nSnellViewer.mount(document.getElementById('snell'), {{ scene: {scene}, tree: {tree} }});\n</script>\n</html>\n"
     )
 }

@@ -1,44 +1,54 @@
-//! An explanation as a tree in the terminal.
+//! An explanation as a tree of text.
 
-use crate::args::ExplainArgs;
-use snell::explain::{Ending, ExplainedNode, ExplainedSample, Explanation, NodeKind, percent};
-use snell::film::transfer::{Encoding, Rounding, Transfer};
+use super::{Ending, ExplainedNode, ExplainedSample, Explanation, LocalLight, NodeKind, percent};
+use crate::film::transfer::{Encoding, Rounding, Transfer};
 use std::fmt::Write;
-use std::io::IsTerminal;
 
-/// Branches that are shown, if not asked otherwise.
-const TOP: usize = 16;
+/// How the tree is written.
+#[derive(Clone, Copy, Debug)]
+pub struct Style {
+    /// So many of the strongest branches are shown.
+    pub top: usize,
+    /// Bounces that are shown.
+    pub depth: u32,
+    /// With patches of colour, by the escape sequences of terminals.
+    pub colored: bool,
+}
 
-/// May stdout be coloured? `NO_COLOR` says no (no-color.org).
-fn colored() -> bool {
-    std::io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|v| v.is_empty())
+impl Default for Style {
+    fn default() -> Self {
+        Self { top: 16, depth: u32::MAX, colored: false }
+    }
 }
 
 /// Two blanks in a colour, or nothing.
-pub(super) fn swatch(color: [f64; 3], transfer: Transfer) -> String {
-    if !colored() {
+pub fn swatch(color: [f64; 3], transfer: Transfer, colored: bool) -> String {
+    if !colored {
         return String::new();
     }
     let [r, g, b] = bytes(color, transfer);
     format!("\x1b[48;2;{r};{g};{b}m  \x1b[0m ")
 }
 
-pub(super) fn bytes(color: [f64; 3], transfer: Transfer) -> [u16; 3] {
+/// A colour in 8 bit.
+pub fn bytes(color: [f64; 3], transfer: Transfer) -> [u16; 3] {
     color.map(|c| Encoding { transfer, rounding: Rounding::Round }.encode(c, 255))
 }
 
-pub(super) fn numbers(color: [f64; 3]) -> String {
+/// A colour in four digits.
+pub fn numbers(color: [f64; 3]) -> String {
     let [r, g, b] = color.map(|c| format!("{c:.4}"));
     format!("({r}, {g}, {b})")
 }
 
-pub(super) fn mean(color: [f64; 3]) -> f64 {
+/// The mean of a colour.
+pub fn mean(color: [f64; 3]) -> f64 {
     color.iter().sum::<f64>() / 3.0
 }
 
 /// Title, sentence, and the tree of each sample.
-pub fn text(explanation: &Explanation, args: &ExplainArgs) -> String {
-    let mut text = head(explanation);
+pub fn text(explanation: &Explanation, style: Style) -> String {
+    let mut text = head(explanation, style.colored);
     let total = mean(explanation.color) * f64::from(explanation.spp);
     for (number, sample) in explanation.samples.iter().enumerate() {
         if explanation.samples.len() > 1 {
@@ -46,7 +56,7 @@ pub fn text(explanation: &Explanation, args: &ExplainArgs) -> String {
         } else {
             text.push('\n');
         }
-        let tree = Tree::new(sample, total, args, explanation.transfer);
+        let tree = Tree::new(sample, total, style, explanation.transfer);
         let hidden = sample.nodes.len() - tree.node(&mut text, 0, "", "");
         if hidden > 0 {
             let _ = writeln!(text, "  … {hidden} more rays; --top N and --depth N show more");
@@ -56,13 +66,13 @@ pub fn text(explanation: &Explanation, args: &ExplainArgs) -> String {
 }
 
 /// Which pixel, its colour, and the sentence.
-pub(super) fn head(explanation: &Explanation) -> String {
+pub fn head(explanation: &Explanation, colored: bool) -> String {
     let Explanation { scene, integrator, pixel: [x, y], size: [width, height], color, transfer, .. } = explanation;
     let [r, g, b] = bytes(*color, *transfer);
     let name = format!("{integrator:?}").to_lowercase();
     format!(
         "{scene}, pixel {x},{y} of {width} x {height}, {name}\n{}{} #{r:02x}{g:02x}{b:02x}\n{}\n",
-        swatch(*color, *transfer),
+        swatch(*color, *transfer, colored),
         numbers(*color),
         explanation.sentence
     )
@@ -72,14 +82,14 @@ pub(super) fn head(explanation: &Explanation) -> String {
 struct Tree<'a> {
     sample: &'a ExplainedSample,
     total: f64,
-    depth: u32,
+    style: Style,
     transfer: Transfer,
     children: Vec<Vec<usize>>,
     shown: Vec<bool>,
 }
 
 impl<'a> Tree<'a> {
-    fn new(sample: &'a ExplainedSample, total: f64, args: &ExplainArgs, transfer: Transfer) -> Self {
+    fn new(sample: &'a ExplainedSample, total: f64, style: Style, transfer: Transfer) -> Self {
         let mut children = vec![Vec::new(); sample.nodes.len()];
         for node in &sample.nodes {
             if let Some(parent) = node.parent {
@@ -93,13 +103,13 @@ impl<'a> Tree<'a> {
         let mut order: Vec<usize> = (0..sample.nodes.len()).collect();
         order.sort_by(|&a, &b| weight(b).total_cmp(&weight(a)).then(a.cmp(&b)));
         let mut shown = vec![false; sample.nodes.len()];
-        for &id in order.iter().take(args.top.unwrap_or(TOP)) {
+        for &id in order.iter().take(style.top) {
             let mut at = Some(id);
             while let Some(id) = at.filter(|&id| !std::mem::replace(&mut shown[id], true)) {
                 at = sample.nodes[id].parent;
             }
         }
-        Self { sample, total, depth: args.depth.unwrap_or(u32::MAX), transfer, children, shown }
+        Self { sample, total, style, transfer, children, shown }
     }
 
     fn share(&self, color: [f64; 3]) -> String {
@@ -114,7 +124,7 @@ impl<'a> Tree<'a> {
             text,
             "{before}{:>6}  {}{}",
             self.share(node.subtotal),
-            swatch(node.subtotal, self.transfer),
+            swatch(node.subtotal, self.transfer, self.style.colored),
             line(node)
         );
         if let Some(local) = &node.local
@@ -135,7 +145,7 @@ impl<'a> Tree<'a> {
     /// The children that are shown, the strongest first.
     fn below(&self, id: usize) -> Vec<usize> {
         let mut below: Vec<usize> = self.children[id].iter().copied().filter(|&c| self.shown[c]).collect();
-        below.retain(|&child| self.sample.nodes[child].depth <= self.depth);
+        below.retain(|&child| self.sample.nodes[child].depth <= self.style.depth);
         let weight = |id: usize| mean(self.sample.nodes[id].subtotal);
         below.sort_by(|&a, &b| weight(b).total_cmp(&weight(a)).then(a.cmp(&b)));
         below
@@ -143,7 +153,7 @@ impl<'a> Tree<'a> {
 }
 
 /// What lights a surface.
-fn lights(local: &snell::explain::LocalLight) -> String {
+fn lights(local: &LocalLight) -> String {
     let mut parts = Vec::new();
     if mean(local.emission) != 0.0 {
         parts.push("it shines".to_owned());

@@ -1,0 +1,72 @@
+//! The tree of a pixel, and where an object is seen.
+
+use crate::errors::raise;
+use crate::scene::Ready;
+use numpy::PyArray2;
+use numpy::ndarray::Array2;
+use pyo3::prelude::*;
+use snell::explain::text::{Style, text};
+use snell::explain::{Explanation, Names, Sightings, explain, find as find_object};
+use snell_formats::page::page;
+use std::sync::Arc;
+
+/// The viewer, built from `viewer/` by `npm run bundle`.
+const VIEWER: &str = include_str!("../../snell-cli/assets/snell-viewer.js");
+
+/// Why a pixel has its colour.
+#[pyclass(frozen)]
+pub struct NativeTree {
+    explanation: Explanation,
+    ready: Arc<Ready>,
+}
+
+impl NativeTree {
+    pub fn of(ready: &Arc<Ready>, x: u32, y: u32) -> Option<Self> {
+        let (explanation, _) = explain(&ready.world, &ready.scene, &ready.name, x, y)?;
+        Some(Self { explanation, ready: Arc::clone(ready) })
+    }
+}
+
+#[pymethods]
+impl NativeTree {
+    /// The JSON form.
+    fn json(&self) -> String {
+        // Every number in it is finite, so that there is always one.
+        serde_json::to_string(&self.explanation).unwrap_or_default()
+    }
+
+    /// The tree of the command line; what is left out is as there.
+    #[pyo3(signature = (top, depth, colored))]
+    fn text(&self, top: Option<usize>, depth: Option<u32>, colored: bool) -> String {
+        let plain = Style::default();
+        let style = Style { top: top.unwrap_or(plain.top), depth: depth.unwrap_or(plain.depth), colored };
+        text(&self.explanation, style)
+    }
+
+    /// The page with the rays in 3D.
+    fn html(&self, py: Python<'_>) -> String {
+        let names = Names { world: &self.ready.world, scene: &self.ready.scene };
+        py.detach(|| page(&self.explanation, &names, VIEWER))
+    }
+}
+
+/// The paths by which an object is seen, with their pixels; and for each pixel which share of it the object is.
+pub type Seen<'py> = (Vec<(String, u64)>, Bound<'py, PyArray2<f64>>);
+
+/// Where an object is seen.
+pub fn find<'py>(py: Python<'py>, ready: &Ready, object: &str) -> PyResult<Seen<'py>> {
+    let Ready { world, scene, .. } = ready;
+    if !world.objects.iter().any(|known| known.name == object) {
+        let mut known: Vec<&str> = world.objects.iter().map(|known| known.name.as_str()).collect();
+        known.dedup();
+        known.truncate(30);
+        let message = format!("no object is called `{object}`");
+        return Err(raise(py, "SceneError", vec![(None, message, Some(format!("objects: {}", known.join(", "))))]));
+    }
+    let Sightings { paths, mask } = py.detach(|| find_object(world, scene, object, 0, &|_| {}));
+    let paths = paths.into_iter().map(|(path, pixels)| (path.to_string(), pixels)).collect();
+    let [width, height] = world.camera.size.map(|length| length as usize);
+    let mask = Array2::from_shape_vec((height, width), mask)
+        .map_err(|error| pyo3::exceptions::PyRuntimeError::new_err(error.to_string()))?;
+    Ok((paths, PyArray2::from_owned_array(py, mask)))
+}

@@ -1,0 +1,23 @@
+//! Snell for Python: what is handed over and back, and when Python's lock is held. No physics, and no settings of its own.
+//!
+//! `python/snell/` is the package that people see; this is its module `snell._native`.
+
+#![allow(clippy::needless_pass_by_value, reason = "what Python hands over comes by value")]
+#![allow(missing_debug_implementations, reason = "Python shows them by its own classes")]
+
+mod errors;
+mod explain;
+mod optics;
+mod picture;
+mod scene;
+
+use pyo3::prelude::*;
+
+#[pymodule]
+fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    scene::register(module)?;
+    optics::register(module)?;
+    module.add_class::<picture::NativePicture>()?;
+    module.add_class::<explain::NativeTree>()
+}

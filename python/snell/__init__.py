@@ -1,0 +1,26 @@
+"""Snell: a ray tracer that shows its work.
+
+Examples
+--------
+>>> import snell
+>>> picture = snell.scenes["lecture/default"].render()
+>>> print(picture.explain(190, 300).sentence)
+Green because 53 % of this pixel is the sphere `green`, seen through `glass` (in at 43.1° → 20.0°); 47 % is the sphere
+`glass` itself.
+"""
+
+from . import optics
+from ._native import __version__
+from .errors import OpticsError, PictureError, RenderError, SceneError, SnellError, SnellWarning
+from .parts import Box, Camera, Globe, Lathe, Light, Material, Mesh, Plane, Render, Sky, Sphere, Texture
+from .picture import Difference, Picture, Sightings
+from .scene import Scene, scenes
+from .sweep import sweep
+from .tree import Hit, LightThere, Local, Node, RayTree, Sample
+
+__all__ = [
+    "Box", "Camera", "Difference", "Globe", "Hit", "Lathe", "Light", "LightThere", "Local", "Material", "Mesh", "Node",
+    "OpticsError", "Picture", "PictureError", "Plane", "RayTree", "Render", "RenderError", "Sample", "Scene",
+    "SceneError", "Sightings", "Sky", "SnellError", "SnellWarning", "Sphere", "Texture", "__version__", "optics",
+    "scenes", "sweep",
+]  # fmt: skip

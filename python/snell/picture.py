@@ -1,0 +1,188 @@
+"""Pictures: their numbers, files, and what is behind a pixel."""
+
+from __future__ import annotations
+
+import operator
+import os
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import DTypeLike, NDArray
+
+from . import _native
+from .errors import PictureError
+from .tree import RayTree
+
+
+@dataclass(frozen=True, eq=False)
+class Sightings:
+    """Where an object is seen.
+
+    Attributes
+    ----------
+    paths : list of (str, int)
+        Ways of light, each with its number of pixels; a pixel counts once for each way that it has.
+    mask : ndarray, (height, width)
+        Which share of each pixel is the object.
+    """
+
+    paths: list[tuple[str, int]]
+    mask: NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Difference:
+    """What two pictures differ in.
+
+    Attributes
+    ----------
+    pixels, total : int
+        So many pixels differ in any bit, of so many.
+    largest : float
+        The largest difference of a number.
+    array : ndarray, (height, width, 3)
+        First minus second.
+    """
+
+    pixels: int
+    total: int
+    largest: float
+    array: NDArray[np.float64]
+
+    def __repr__(self) -> str:
+        return f"{self.pixels} of {self.total} pixels differ, by {self.largest:g} at most"
+
+
+class Picture:
+    """A picture, as `Scene.render` makes it; notebooks show it as PNG.
+
+    Examples
+    --------
+    >>> import snell
+    >>> picture = snell.scenes["lecture/default"].render()
+    >>> picture
+    <Picture of lecture/default, 512 x 512>
+    >>> picture.explain(190, 300).sentence[:29]
+    'Green because 53 % of this pi'
+    >>> picture.diff(picture)
+    0 of 262144 pixels differ, by 0 at most
+    """
+
+    def __init__(self, native: _native.NativePicture, name: str) -> None:
+        self._native = native
+        self.name = name
+        #: Linear colour, height x width x 3, row 0 on top: the film itself, not a copy; read-only.
+        self.array: NDArray[np.float64] = native.array
+
+    @property
+    def width(self) -> int:
+        """Columns."""
+        return self._native.region[2]
+
+    @property
+    def height(self) -> int:
+        """Rows."""
+        return self._native.region[3]
+
+    @property
+    def finished(self) -> bool:
+        """Is every pixel done? False after ^C."""
+        return self._native.finished
+
+    @property
+    def seconds(self) -> float:
+        """Seconds that rendering took, without reading and compiling the scene."""
+        return self._native.seconds
+
+    @property
+    def rays(self) -> int:
+        """Rays of all kinds that were traced."""
+        return self._native.rays
+
+    def __array__(self, dtype: DTypeLike | None = None, copy: bool | None = None) -> NDArray[Any]:
+        same = dtype is None or np.dtype(dtype) == self.array.dtype
+        if copy is False and not same:
+            raise ValueError("another type of numbers needs a copy")
+        return self.array if same and not copy else self.array.astype(dtype or np.float64)
+
+    def save(self, path: str | os.PathLike[str], *, bits: int = 8, binary: bool = False) -> None:
+        """Write it as .png, .ppm, .exr or .npy; PNG and EXR remember how it was made (``snell render --from``).
+
+        Parameters
+        ----------
+        path : path
+            Where to; its ending is the format.
+        bits : {8, 16}
+            Of a PNG.
+        binary : bool
+            P6 instead of P3, for PPM.
+
+        Raises
+        ------
+        PictureError
+            If it cannot be written; what was there before stays.
+        """
+        if bits not in (8, 16):
+            raise PictureError([("bits", f"expected 8 or 16, read {bits!r}", None)])
+        self._native.save(Path(path), bits, binary)
+
+    def diff(self, other: Picture | NDArray[np.floating[Any]]) -> Difference:
+        """Compare with another picture, or an array of its shape.
+
+        Raises
+        ------
+        PictureError
+            If they are of different shapes.
+        """
+        theirs = np.asarray(other.array if isinstance(other, Picture) else other)
+        if theirs.shape != self.array.shape:
+            raise PictureError([(None, f"an array of shape {theirs.shape} is none of {self.array.shape}", None)])
+        array = self.array - theirs
+        different = int(np.any(self.array != theirs, axis=2).sum())
+        return Difference(different, self.width * self.height, float(np.abs(array).max()), array)
+
+    def crop(self, x: int, y: int, width: int, height: int) -> Picture:
+        """Return a part, a copy: left column, top row, and size in pixels.
+
+        Raises
+        ------
+        PictureError
+            If it does not lie within.
+        """
+        left, top = self._native.region[:2]
+        numbers = [operator.index(number) for number in (left + x, top + y, width, height)]
+        part = self._native.part(*numbers) if all(0 <= number < 2**32 for number in numbers) else None
+        if part is None or x < 0 or y < 0:
+            message = f"{width} x {height} pixels at ({x}, {y}) do not lie within {self.width} x {self.height}"
+            raise PictureError([("crop", message, None)])
+        return Picture(part, self.name)
+
+    def explain(self, x: int, y: int) -> RayTree:
+        """Say why a pixel has its colour.
+
+        Parameters
+        ----------
+        x, y : int
+            Column and row, from the top left.
+
+        Raises
+        ------
+        PictureError
+            If there is no such pixel.
+        """
+        if not (0 <= x < self.width and 0 <= y < self.height):
+            help = f"columns are 0 to {self.width - 1}, rows 0 to {self.height - 1}, from the top left"
+            raise PictureError([("explain", f"there is no pixel {x},{y}", help)])
+        left, top = self._native.region[:2]
+        tree = self._native.explain(left + operator.index(x), top + operator.index(y))
+        assert tree is not None, "the pixel is there"
+        return RayTree(tree)
+
+    def _repr_png_(self) -> bytes:
+        return self._native.png()
+
+    def __repr__(self) -> str:
+        state = "" if self.finished else ", unfinished"
+        return f"<Picture of {self.name}, {self.width} x {self.height}{state}>"

@@ -1,0 +1,179 @@
+"""Pictures: numbers without a copy, files, memory, explanations."""
+
+from __future__ import annotations
+
+import gc
+import json
+import resource
+import struct
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from common import ROOT
+from common import snell as command
+
+import snell
+from snell import Scene
+
+
+def lecture(width: int = 64) -> snell.Picture:
+    return snell.scenes["lecture/default"].render(width=width)
+
+
+def test_the_film_is_not_copied_and_outlives_its_picture() -> None:
+    picture = lecture()
+    assert np.shares_memory(picture.array, picture._native.array)
+    assert np.asarray(picture) is picture.array
+    array, copy = picture.array, picture.array.copy()
+    assert not array.flags.writeable
+    assert not array.flags.owndata
+    with pytest.raises(ValueError, match="WRITEABLE"):
+        array.flags.writeable = True
+    del picture
+    gc.collect()
+    lecture()
+    assert array.tobytes() == copy.tobytes()
+
+
+def test_a_large_film_is_held_once() -> None:
+    """4096 x 4096 pixels are 403 MB of numbers: a copy would show."""
+    script = (
+        "import resource, snell\n"
+        "picture = snell.scenes['lecture/default'].render(width=4096)\n"
+        "print(picture.array.nbytes, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024)\n"
+    )
+    run = subprocess.run([sys.executable, "-c", script], check=True, capture_output=True, text=True)
+    film, peak = map(int, run.stdout.split())
+    assert film == 4096 * 4096 * 24
+    assert peak < film + 200e6, f"{peak / 1e6:.0f} MB"
+
+
+def test_many_renders_do_not_grow() -> None:
+    def resident() -> int:
+        return int(Path("/proc/self/statm").read_text().split()[1]) * resource.getpagesize()
+
+    scene = snell.scenes["lecture/default"]
+    for _ in range(20):
+        scene.render(width=128).explain(1, 1)
+    before = resident()
+    for _ in range(200):
+        scene.render(width=128).explain(1, 1)
+    # A film that is kept would be 80 MB; an allocator may hold some pages.
+    assert resident() - before < 8e6
+
+
+def test_files_are_those_of_the_command_line(tmp_path: Path) -> None:
+    picture = lecture()
+    for ending in ("png", "exr", "ppm", "npy"):
+        picture.save(tmp_path / f"python.{ending}")
+        command("render", "--quiet", "lecture/default", "--size", "64x64", "-o", str(tmp_path / f"command.{ending}"))
+        said = command("diff", str(tmp_path / f"python.{ending}"), str(tmp_path / f"command.{ending}"))
+        assert " 0 of 4096 pixels differ" in said, said
+    assert np.load(tmp_path / "python.npy").tobytes() == picture.array.tobytes()
+    picture.save(tmp_path / "deep.png", bits=16)
+    assert (tmp_path / "deep.png").read_bytes()[24] == 16
+
+
+def test_a_picture_remembers_how_it_was_made(tmp_path: Path) -> None:
+    part = lecture().crop(10, 20, 30, 25)
+    for name, picture in (("whole", lecture()), ("part", part)):
+        picture.save(tmp_path / f"{name}.png")
+        # It fails if the film is another one.
+        command("render", "--quiet", "--from", str(tmp_path / f"{name}.png"), "-o", str(tmp_path / "again.npy"))
+        assert np.load(tmp_path / "again.npy").tobytes() == picture.array.tobytes()
+
+
+def test_notebooks_get_a_png() -> None:
+    png = lecture()._repr_png_()
+    assert png.startswith(b"\x89PNG")
+    assert struct.unpack(">II", png[16:24]) == (64, 64)
+
+
+def test_parts_and_differences() -> None:
+    picture = lecture()
+    part = picture.crop(10, 20, 30, 25).crop(5, 5, 10, 10)
+    assert part.array.tobytes() == picture.array[25:35, 15:25].tobytes()
+    assert part.explain(3, 4).pixel == (18, 29)
+    other = snell.scenes["lecture/diamond"].render(width=64)
+    difference = picture.diff(other)
+    assert 0 < difference.pixels < difference.total == 4096
+    assert difference.largest == np.abs(picture.array - other.array).max()
+    assert picture.diff(picture.array).pixels == 0
+
+
+@pytest.mark.parametrize(("name", "width"), [("lecture/default", 512), ("gallery/prism", 64), ("gallery/bubbles", 64)])
+def test_contributions_add_up_to_the_pixel(name: str, width: int) -> None:
+    picture = snell.scenes[name].render(width=width)
+    for x, y in [(width // 3, picture.height // 2), (width // 2, picture.height // 2), (0, 0)]:
+        tree = picture.explain(x, y)
+        for sample in tree.samples:
+            total = np.zeros(3)
+            for node in sample.nodes:
+                total += node.contribution
+            assert tuple(total) == sample.color
+        assert tree.color == tuple(picture.array[y, x])
+
+
+def test_a_tree_has_all_forms(tmp_path: Path) -> None:
+    tree = snell.scenes["lecture/default"].render().explain(190, 300)
+    assert tree.text() == command("explain", "lecture/default", "190,300")
+    assert tree.text(top=1, depth=1) == command("explain", "lecture/default", "190,300", "--top", "1", "--depth", "1")
+    assert tree.to_json() == command("explain", "lecture/default", "190,300", "--json").strip()
+    command("explain", "lecture/default", "190,300", "--html", str(tmp_path / "command.html"))
+    tree.save(tmp_path / "python.html")
+    assert (tmp_path / "python.html").read_bytes() == (tmp_path / "command.html").read_bytes()
+    tree.save(tmp_path / "tree.json")
+    assert json.loads((tmp_path / "tree.json").read_text())["pixel"] == [190, 300]
+    assert "refracted → green" in tree._repr_html_()
+    assert tree.nodes[0].hit is not None
+    assert tree.nodes[0].hit.object == "glass"
+    assert {node.kind for node in tree.nodes} == {"camera", "refracted", "mirror"}
+
+
+def test_sightings_are_those_of_the_command_line() -> None:
+    found = snell.scenes["lecture/default"].replace(camera=snell.scenes["lecture/quarter"].camera).find("green")
+    assert found.mask.shape == (512, 512)
+    said = command("explain", "lecture/quarter", "--find", "green")
+    assert all(f"{pixels:9} px  {path}\n" in said for path, pixels in found.paths[:5])
+    assert f"{(found.mask > 0).sum():9} px  together" in said
+
+
+def test_another_shape_keeps_pixels_square(tmp_path: Path) -> None:
+    wide = snell.scenes["lecture/default"].render(width=60, height=30)
+    command("render", "--quiet", "lecture/default", "--size", "60x30", "-o", str(tmp_path / "wide.npy"))
+    assert wide.array.tobytes() == np.load(tmp_path / "wide.npy").tobytes()
+
+
+def test_progress_is_told_and_may_fail() -> None:
+    scene = snell.scenes["gallery/brilliant"]
+    told: list[tuple[int, int, int]] = []
+    picture = scene.render(width=300, spp=2, progress=lambda *done: told.append(done))
+    assert told
+    assert all(0 <= pixels <= total == picture.width * picture.height for pixels, total, _ in told)
+    assert told == sorted(told)
+
+    def fail(*_: int) -> None:
+        raise RuntimeError("enough")
+
+    with pytest.raises(RuntimeError, match="enough"):
+        scene.render(width=2000, spp=64, progress=fail)
+
+
+def test_the_readme_is_right(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    blocks = (ROOT / "README.md").read_text().split("```python\n")[1:]
+    assert blocks
+    variables: dict[str, object] = {}
+    for block in blocks:
+        exec(block.split("```")[0], variables)
+    assert any(tmp_path.iterdir())
+
+
+def test_odd_scenes_warn() -> None:
+    scene = snell.scenes["lecture/default"].with_("material.glass.dyed", True)
+    with pytest.warns(snell.SnellWarning, match="W006"):
+        scene.render(width=8)
+    assert isinstance(scene, Scene)

@@ -1,0 +1,109 @@
+"""Scenes as values, and as files."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from common import ROOT, film
+
+import snell
+from snell import Camera, Light, Material, Mesh, Plane, Render, Scene, Sphere
+
+TETRAHEDRON = ([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)])
+
+
+def small(**parts: object) -> Scene:
+    scene = Scene(
+        settings=Render("lecture", (16, 12)),
+        camera=Camera((0, 0, 5), (0, 0, 0), (0, 1, 0), fov=40),
+        light=[Light((1, 2, 3), 1)],
+        material={"red": Material(kd=(1, 0, 0)), "glass": Material(ko=0, eta=1.5)},
+    )
+    return scene.replace(**parts)
+
+
+@pytest.mark.parametrize("name", [*snell.scenes, "tests/polygons.toml"])
+@pytest.mark.parametrize("ending", ["toml", "json"])
+def test_every_scene_comes_back(name: str, ending: str, tmp_path: Path) -> None:
+    scene = Scene.load(ROOT / name if name.endswith(".toml") else name)
+    scene.save(tmp_path / f"again.{ending}")
+    again = Scene.load(tmp_path / f"again.{ending}")
+    assert again == scene
+    assert eval(repr(scene), dict(vars(snell))) == scene
+    assert scene.replace() == scene
+
+
+def test_a_saved_scene_has_the_same_picture(tmp_path: Path) -> None:
+    scene = snell.scenes["gallery/window"]
+    scene.save(tmp_path / "window.toml")
+    picture = scene.render(width=40)
+    size = f"{picture.width}x{picture.height}"
+    assert picture.array.tobytes() == film(str(tmp_path / "window.toml"), tmp_path, "--size", size).tobytes()
+
+
+def test_meshes_are_arrays(tmp_path: Path) -> None:
+    vertices, faces = map(np.array, TETRAHEDRON)
+    scene = small(mesh=[Mesh(vertices, faces, "red"), Mesh(*TETRAHEDRON, 0, transform=[{"move": (1, 0, 0)}])])
+    assert scene == small(mesh=[Mesh(*TETRAHEDRON, 0), Mesh(*TETRAHEDRON, "red", transform=[{"move": [1, 0, 0]}])])
+    assert scene != small(mesh=[Mesh(vertices * 2, faces, "red"), scene.mesh[1]])
+    assert scene.render().array.max() > 0
+    scene.save(tmp_path / "mesh.toml")
+    assert Scene.load(tmp_path / "mesh.toml") == scene
+    assert scene.render().array.tobytes() == film(str(tmp_path / "mesh.toml"), tmp_path).tobytes()
+    assert eval(repr(scene), dict(vars(snell))) == scene
+
+
+def test_models_are_found_from_where_a_scene_is_saved(tmp_path: Path) -> None:
+    (tmp_path / "a").mkdir()
+    (tmp_path / "b").mkdir()
+    (tmp_path / "a" / "face.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    scene = small(mesh=[Mesh(file="face.obj", material="red")], folder=str(tmp_path / "a"))
+    scene.save(tmp_path / "b" / "scene.toml")
+    again = Scene.load(tmp_path / "b" / "scene.toml")
+    assert scene.render().array.tobytes() == again.render().array.tobytes()
+
+
+def test_scenes_are_values() -> None:
+    scene = snell.scenes["lecture/default"]
+    diamond = scene.with_("material.glass.eta", 2.42)
+    assert isinstance(diamond.material, dict)
+    assert diamond.material["glass"].eta == 2.42
+    assert scene == snell.scenes["lecture/default"] != diamond
+    moved = scene.with_("sphere.glass.center", (1, 2, 3)).with_("light.2.color", [1, 0, 0])
+    assert (moved.sphere[0].center, moved.light[1].color) == ((1, 2, 3), (1, 0, 0))
+    other = scene.replace(eta_outside=1.33)
+    other.camera.eye = (0, 0, 0)
+    assert scene.camera.eye == (50, 50, 100), "a copy has its own parts"
+    with pytest.raises(snell.SceneError, match="did you mean `glass`"):
+        scene.with_("material.glas.eta", 2)
+
+
+def test_numbers_and_names_of_materials_are_the_same() -> None:
+    materials = [Material(kd=1), Material(ka=1)]
+    by_number = small(material=materials, sphere=[Sphere((0, 0, 0), 1, 1)])
+    assert by_number == small(material=materials, sphere=[Sphere([0, 0, 0], 1.0, "1")])
+
+
+def test_defaults_are_those_of_the_library(tmp_path: Path) -> None:
+    """What the file leaves out is read as what the classes have."""
+    path = tmp_path / "bare.toml"
+    path.write_text(
+        'snell = 1\n[render]\nintegrator = "lecture"\nsize = [4, 4]\n'
+        "[camera]\neye = [0, 0, 5]\nlook_at = [0, 0, 0]\nup = [0, 1, 0]\nfov = 40\n[material.m]\n"
+        '[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\nmaterial = "m"\n[[plane]]\nsize = [1, 1]\nmaterial = "m"\n'
+        '[[lathe]]\nprofile = [[0, 0], [1, 0], [0, 1]]\nmaterial = "m"\n[texture.t]\nchecker = [0, 1]\n'
+        "[sky]\nhorizon = 1\n"
+    )
+    bare = Scene(
+        settings=Render("lecture", (4, 4)),
+        camera=Camera((0, 0, 5), (0, 0, 0), (0, 1, 0), fov=40),
+        material={"m": Material()},
+        sphere=[Sphere((0, 0, 0), 1, "m")],
+        plane=[Plane(size=(1, 1), material="m")],
+        lathe=[snell.Lathe([(0, 0), (1, 0), (0, 1)], "m")],
+        texture={"t": snell.Texture([0, 1])},
+        sky=snell.Sky(1),
+    )
+    assert Scene.load(path) == bare
