@@ -30,6 +30,12 @@ class Image:
         return b"\x89PNG\r\n\x1a\n" + body
 
 
+def srgb(picture):
+    """Return a picture by the curve of screens, which all scenes but the lecture's are made for."""
+    linear = np.clip(picture, 0, 1)
+    return np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
+
+
 def row(pictures: dict, zoom: int = 1) -> None:
     """Show pictures of one height beside each other, and under them what they are, from left to right."""
     arrays = [Image(picture).array for picture in pictures.values()]
@@ -53,7 +59,7 @@ def curves(x, ys: dict, xlabel: str, ylabel: str, top: float, marks: dict | None
         return height - foot - value / top * (height - foot - head)
 
     parts = [f'<rect width="{width}" height="{height}" fill="white"/>']
-    for value in np.linspace(x.min(), x.max(), 10):
+    for value in np.linspace(x.min(), x.max(), 7 if np.ptp(x) == 300 else 10):
         parts.append(f'<text x="{across(value):.1f}" y="{height - foot + 16}" text-anchor="middle">{value:g}</text>')
     for value in np.linspace(0, top, 7 if top == 60 else 6):
         parts.append(f'<path d="M{left} {up(value):.1f}H{width - right}" stroke="#dddddd"/>')
