@@ -69,7 +69,7 @@ pub fn write(path: &Path, format: Format, film: &Film, encoding: Encoding, recip
     })
 }
 
-/// A film as the bytes of a PNG of 8 bit, as [`write`] has it.
+/// A film as the bytes of a PNG of 8 bit, as [`write()`] has it.
 ///
 /// # Errors
 /// When it is too large for one.

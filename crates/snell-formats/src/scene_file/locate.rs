@@ -41,7 +41,7 @@ pub(super) fn locate(text: &str, syntax: Syntax, steps: &[Step]) -> Option<Range
     }
 }
 
-/// The way to the innermost value of a JSON text around a byte: the inverse of [`locate`].
+/// The way to the innermost value of a JSON text around a byte: the inverse of `locate`.
 pub fn steps_at(json: &str, offset: usize) -> Vec<Step> {
     let mut steps = Vec::new();
     let (collect, parse) = (jsonc_parser::CollectOptions::default(), jsonc_parser::ParseOptions::default());
