@@ -13,12 +13,12 @@ use crate::world::World;
 use serde::Serialize;
 
 /// The version of this form.
-pub const VERSION: u32 = 1;
+const VERSION: u32 = 1;
 
 /// Why a pixel has the colour it has.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Explanation {
-    /// [`VERSION`].
+    /// The version of this form: 1.
     pub snell_ray_tree: u32,
     /// The name of the scene.
     pub scene: String,
