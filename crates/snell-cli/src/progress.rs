@@ -30,7 +30,7 @@ impl Reporter {
             ProgressKind::Auto => {
                 // Hidden by itself where stderr is no terminal.
                 let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr_with_hz(10));
-                let colors = if crate::say::colored() { ".yellow/dim" } else { "" };
+                let colors = if crate::say::colored(&std::io::stderr()) { ".yellow/dim" } else { "" };
                 let template = format!("{{prefix}} {{bar:40{colors}}} {{percent:>3}} %  {{msg}}  {{eta}} left");
                 if let Ok(style) = ProgressStyle::with_template(&template) {
                     bar.set_style(style.progress_chars("━╸─"));

@@ -47,9 +47,9 @@ impl<T> OrFail<T> for Result<T, Vec<Report>> {
     }
 }
 
-/// May stderr be coloured? `NO_COLOR` says no (no-color.org).
-pub fn colored() -> bool {
-    std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|v| v.is_empty())
+/// May what is written there be coloured? `NO_COLOR` says no (no-color.org).
+pub fn colored(stream: &impl IsTerminal) -> bool {
+    stream.is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|v| v.is_empty())
 }
 
 /// More reports of one kind than this are counted, not shown.
@@ -72,7 +72,7 @@ pub fn more(count: usize) {
 
 /// Writes a report with its place in the source to stderr.
 pub fn report(report: &Report) {
-    let styles = if colored() { ThemeStyles::ansi() } else { ThemeStyles::none() };
+    let styles = if colored(&std::io::stderr()) { ThemeStyles::ansi() } else { ThemeStyles::none() };
     let characters =
         ThemeCharacters { error: "error:".to_owned(), warning: "warning:".to_owned(), ..ThemeCharacters::unicode() };
     let handler = GraphicalReportHandler::new_themed(GraphicalTheme { characters, styles }).with_width(100);

@@ -110,3 +110,22 @@ fn mistakes_say_what_there_is() {
         assert!(stderr(&output).contains(expected), "{arguments:?}: {}", stderr(&output));
     }
 }
+
+/// What README and documentation show below a command is what it prints: each block is a part of it, line by line.
+#[test]
+fn commands_in_the_documentation_print_what_is_shown() {
+    let mut count = 0;
+    for page in [include_str!("../../../README.md"), include_str!("../../../docs/explain.md")] {
+        for block in page.split("```text\n$ snell ").skip(1) {
+            let block = block.split("```").next().unwrap();
+            let (command, shown) = block.split_once('\n').unwrap();
+            let printed = stdout(&run(Path::new("."), &command.split_whitespace().collect::<Vec<_>>()));
+            let mut lines = printed.lines();
+            for line in shown.lines() {
+                assert!(lines.any(|printed| printed == line), "snell {command} does not print\n{line}\nbut\n{printed}");
+            }
+            count += 1;
+        }
+    }
+    assert_eq!(count, 5);
+}

@@ -134,7 +134,9 @@ fn layers_add_up_to_the_picture() {
         let split = layers(&world, &scene, 5, 0, &|_| {});
         assert_eq!(split.picture, film.pixels, "{name}");
         let left = split.rest.iter().any(|c| *c != Rgb::gray(0.0));
-        assert!(left == (split.layers.len() == 5) || split.layers.len() < 5, "{name}");
+        // Bubbles have few ways in the lecture's model, which refracts only in spheres; the others have more than five.
+        let few = name == "gallery/bubbles, Lecture";
+        assert_eq!((split.layers.len() == 5, left), (!few, !few), "{name}");
         for (i, pixel) in film.pixels.iter().enumerate() {
             let all = split.layers.iter().map(|(_, pixels)| pixels[i]).chain([split.rest[i]]);
             let (sum, count) = all.fold((Rgb::gray(0.0), 0.0), |(sum, count), c| (sum + c, count + 1.0));

@@ -2,26 +2,15 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
+mod common;
+
+use common::data;
 use snell::render::{Options, Rendered, render};
 use snell::scene::Scene;
 use snell::world::World;
 use snell_formats::load::{Kind, load_text};
 use snell_formats::{LoadOptions, Source, load};
-use std::io::Write;
-use std::path::{Path, PathBuf};
-
-/// The real files that are tested with but not part of the project: `SNELL_DATA`, or `shared/data` beside the clone.
-fn data() -> Option<PathBuf> {
-    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
-    let folder = std::env::var_os("SNELL_DATA").map_or(beside, PathBuf::from);
-    if folder.is_dir() {
-        return Some(folder);
-    }
-    // Not by `eprintln!`, which the test harness hides where a test passes.
-    let line = format!("SKIPPED: the real files are not there ({}); set SNELL_DATA\n", folder.display());
-    std::io::stderr().write_all(line.as_bytes()).unwrap();
-    None
-}
+use std::path::Path;
 
 const SKY: f64 = 0.5;
 

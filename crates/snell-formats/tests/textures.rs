@@ -1,23 +1,11 @@
 //! Real models with texture coordinates and real pictures.
 
+mod common;
+
+use common::data;
 use snell::geometry::solid::{Options, repair};
 use snell_formats::model::parse_model;
 use snell_formats::read_image;
-use std::io::Write;
-use std::path::{Path, PathBuf};
-
-/// The real files: `SNELL_DATA`, or `shared/data` beside the clone.
-fn data() -> Option<PathBuf> {
-    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
-    let folder = std::env::var_os("SNELL_DATA").map_or(beside, PathBuf::from);
-    if folder.is_dir() {
-        return Some(folder);
-    }
-    // Not by `eprintln!`, which the test harness hides where a test passes.
-    let line = format!("SKIPPED: the real files are not there ({}); set SNELL_DATA\n", folder.display());
-    let _ = std::io::stderr().write_all(line.as_bytes());
-    None
-}
 
 #[test]
 fn the_cow_is_painted_all_over_and_stays_so() {

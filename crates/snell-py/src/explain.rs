@@ -56,9 +56,8 @@ pub type Seen<'py> = (Vec<(String, u64)>, Bound<'py, PyArray2<f64>>);
 /// Where an object is seen.
 pub fn find<'py>(py: Python<'py>, ready: &Ready, object: &str) -> PyResult<Seen<'py>> {
     let Ready { world, scene, .. } = ready;
-    if !world.objects.iter().any(|known| known.name == object) {
-        let mut known: Vec<&str> = world.objects.iter().map(|known| known.name.as_str()).collect();
-        known.dedup();
+    let mut known = world.object_names();
+    if !known.contains(&object) {
         known.truncate(30);
         let message = format!("no object is called `{object}`");
         return Err(raise(py, "SceneError", vec![(None, message, Some(format!("objects: {}", known.join(", "))))]));

@@ -130,11 +130,24 @@ pub fn render_into(film: &mut Film, world: &World, options: &Options<'_>) -> Res
 /// Traces one pixel, column and row from the top left, and writes down every ray. The sum of the trees is the film's value,
 /// bit for bit. `None` where the picture has no such pixel.
 pub fn trace_pixel(world: &World, x: u32, y: u32) -> Option<PixelTrace> {
-    let [width, height] = world.camera.size;
-    let mut tracer = Tracer::<f64, _>::new(world, None, Recorder::default());
-    let pixel = (x < width && y < height).then_some(Crop { x, y, width: 1, height: 1 })?;
-    let radiance = tracer.trace(&pixel)?.first().copied()?;
-    Some(PixelTrace { radiance, samples: tracer.observer.samples })
+    PixelTracer::new(world).trace(x, y)
+}
+
+/// Traces one pixel after the other, in the memory of the one before.
+pub(crate) struct PixelTracer<'a>(Tracer<'a, f64, Recorder>);
+
+impl<'a> PixelTracer<'a> {
+    pub fn new(world: &'a World) -> Self {
+        Self(Tracer::new(world, None, Recorder::default()))
+    }
+
+    /// As [`trace_pixel`].
+    pub fn trace(&mut self, x: u32, y: u32) -> Option<PixelTrace> {
+        let [width, height] = self.0.world.camera.size;
+        let pixel = (x < width && y < height).then_some(Crop { x, y, width: 1, height: 1 })?;
+        let radiance = self.0.trace(&pixel)?.first().copied()?;
+        Some(PixelTrace { radiance, samples: std::mem::take(&mut self.0.observer.samples) })
+    }
 }
 
 /// What one thread does.

@@ -1,8 +1,8 @@
 //! `--set` and `--without`: the same pixel, before and after, branch by branch.
 
-use super::{colored, pixel, settings};
+use super::{colored, known_object, pixel, settings};
 use crate::args::ExplainArgs;
-use crate::say::{self, Failure, OrFail, Outcome, SCENE, USAGE};
+use crate::say::{self, OrFail, Outcome, SCENE};
 use snell::explain::text::{head, mean, numbers, swatch};
 use snell::explain::{Explanation, Names, Path, by_path};
 use snell::film::Rgb;
@@ -10,23 +10,20 @@ use snell::render::trace_pixel;
 use snell::scene::Scene;
 use snell::world::World;
 use snell_formats::load::Loaded;
-use snell_formats::{LoadOptions, Report, load};
+use snell_formats::{LoadOptions, load};
 use std::fmt::Write;
 
-pub fn run(before: &Explanation, world: &World, args: &ExplainArgs, [x, y]: [u32; 2]) -> Outcome {
+/// Compares a pixel of a scene, as explained, with that of the scene that `args` ask for.
+pub fn run(before: &Explanation, world: &World, original: &Loaded, args: &ExplainArgs) -> Outcome {
+    let [x, y] = before.pixel;
     let mut loaded = load(&args.scene, &LoadOptions::from(&args.reading)).or_fail(SCENE)?;
     settings(&mut loaded, args);
     if let Some(object) = &args.without {
-        remove(&mut loaded.scene, world, object)?;
+        known_object(world, object)?;
+        remove(&mut loaded.scene, object);
     }
     let changed = loaded.world().or_fail(SCENE)?;
     let after = pixel(&changed, &loaded, args, x, y)?;
-    let original = {
-        let mut loaded =
-            load(&args.scene, &LoadOptions { set: Vec::new(), ..LoadOptions::from(&args.reading) }).or_fail(SCENE)?;
-        settings(&mut loaded, args);
-        loaded
-    };
     let mut text = head(before, colored());
     let without = args.without.as_ref().map(|object| format!("without {object}"));
     let changes: Vec<String> = args.reading.set.iter().map(|change| format!("with {change}")).chain(without).collect();
@@ -38,18 +35,12 @@ pub fn run(before: &Explanation, world: &World, args: &ExplainArgs, [x, y]: [u32
         numbers(after.color),
         after.sentence
     );
-    text += &table(&paths(world, &original, x, y), &paths(&changed, &loaded, x, y));
+    text += &table(&paths(world, original, x, y), &paths(&changed, &loaded, x, y));
     say::print(&text)
 }
 
 /// Takes an object out of a scene.
-fn remove(scene: &mut Scene, world: &World, object: &str) -> Result<(), Failure> {
-    let mut known: Vec<&str> = world.objects.iter().map(|o| o.name.as_str()).collect();
-    known.dedup();
-    if !known.contains(&object) {
-        let help = format!("objects: {}", known.into_iter().take(30).collect::<Vec<_>>().join(", "));
-        return Err(Failure::new(USAGE, Report::error(format!("no object is called `{object}`")).help(help)));
-    }
+fn remove(scene: &mut Scene, object: &str) {
     // What has no name keeps the one that its place in the list gives it.
     let name = |name: &mut Option<String>, kind: &str, i: usize| {
         name.get_or_insert_with(|| format!("{kind} {}", i + 1));
@@ -67,7 +58,6 @@ fn remove(scene: &mut Scene, world: &World, object: &str) -> Result<(), Failure>
     scene.planes.retain(|plane| plane.name.as_deref() != Some(object));
     scene.boxes.retain(|cuboid| cuboid.name.as_deref() != Some(object));
     scene.lathes.retain(|lathe| lathe.name.as_deref() != Some(object));
-    Ok(())
 }
 
 fn paths(world: &World, loaded: &Loaded, x: u32, y: u32) -> Vec<(Path, Rgb)> {

@@ -1,7 +1,7 @@
 //! `--find`: in which pixels an object is seen, and by which way.
 
-use crate::args::ExplainArgs;
-use crate::args::ProgressKind;
+use super::known_object;
+use crate::args::{ExplainArgs, ProgressKind};
 use crate::progress::Reporter;
 use crate::say::{self, FAILED, Failure, OrFail, Outcome, USAGE};
 use snell::explain::find;
@@ -18,12 +18,7 @@ use std::fmt::Write;
 const LISTED: usize = 20;
 
 pub fn run(world: &World, loaded: &Loaded, object: &str, args: &ExplainArgs) -> Outcome {
-    let mut known: Vec<&str> = world.objects.iter().map(|o| o.name.as_str()).collect();
-    known.dedup();
-    if !known.contains(&object) {
-        let help = format!("objects: {}", known.into_iter().take(30).collect::<Vec<_>>().join(", "));
-        return Err(Failure::new(USAGE, Report::error(format!("no object is called `{object}`")).help(help)));
-    }
+    known_object(world, object)?;
     let [width, height] = world.camera.size.map(u64::from);
     let reporter = Reporter::new(ProgressKind::Auto, false, "looking");
     let done = |rows: u64| reporter.update(Progress { pixels: rows * width, total_pixels: width * height, rays: 0 });

@@ -13,7 +13,6 @@ use snell::world::World;
 use snell_formats::load::Loaded;
 use snell_formats::page::page;
 use snell_formats::{LoadOptions, Report, disk, load};
-use std::io::IsTerminal;
 use std::path::Path;
 
 /// The viewer, built from `viewer/` by `npm run bundle`.
@@ -35,7 +34,7 @@ pub fn run(args: &ExplainArgs) -> Outcome {
     };
     let explanation = pixel(&world, &loaded, args, x, y)?;
     if !args.reading.set.is_empty() || args.without.is_some() {
-        return compare::run(&explanation, &world, args, [x, y]);
+        return compare::run(&explanation, &world, &loaded, args);
     }
     if let Some(light) = &args.light {
         return say::print(&light::text(&explanation, light)?);
@@ -55,9 +54,9 @@ pub fn run(args: &ExplainArgs) -> Outcome {
     say::print(&text::text(&explanation, style))
 }
 
-/// May stdout be coloured? `NO_COLOR` says no (no-color.org).
+/// May stdout be coloured?
 fn colored() -> bool {
-    std::io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|v| v.is_empty())
+    say::colored(&std::io::stdout())
 }
 
 /// The settings of the command line.
@@ -66,7 +65,19 @@ fn settings(loaded: &mut Loaded, args: &ExplainArgs) {
     render.integrator = args.integrator.unwrap_or(render.integrator);
     render.shadows = args.shadows.unwrap_or(render.shadows);
     render.spp = args.spp.unwrap_or(render.spp);
-    render.size = args.size.unwrap_or(render.size);
+    if let Some(size) = args.size {
+        loaded.scene.resize(size);
+    }
+}
+
+/// Fails with the names that there are, if a scene has no such object.
+fn known_object(world: &World, object: &str) -> Outcome {
+    let known = world.object_names();
+    if known.contains(&object) {
+        return Ok(());
+    }
+    let help = format!("objects: {}", known.into_iter().take(30).collect::<Vec<_>>().join(", "));
+    Err(Failure::new(USAGE, Report::error(format!("no object is called `{object}`")).help(help)))
 }
 
 fn pixel(world: &World, loaded: &Loaded, args: &ExplainArgs, x: u32, y: u32) -> Result<Explanation, Failure> {

@@ -9,6 +9,8 @@ use snell::render::{Options, render, trace_pixel};
 use snell::scene::{Camera, Integrator, Material, Mesh, Render, Scene, Sphere, Transfer};
 use snell::trace::{RayKind, RayTree};
 use snell::world::World;
+use std::io::Write;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// An empty white room, seen along −z.
@@ -70,4 +72,17 @@ pub fn close(a: Rgb, b: Rgb, tolerance: f64) -> bool {
 /// How many pixels of two pictures are the same to within 1e-9.
 pub fn alike(a: &Film, b: &Film) -> usize {
     a.pixels.iter().zip(&b.pixels).filter(|(a, b)| close(**a, **b, 1e-9)).count()
+}
+
+/// The real files that are tested with but not part of the project: `SNELL_DATA`, or `shared/data` beside the clone.
+pub fn data() -> Option<PathBuf> {
+    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
+    let folder = std::env::var_os("SNELL_DATA").map_or(beside, PathBuf::from);
+    if folder.is_dir() {
+        return Some(folder);
+    }
+    // Not by `eprintln!`, which the test harness hides where a test passes.
+    let line = format!("SKIPPED: the real files are not there ({}); set SNELL_DATA\n", folder.display());
+    std::io::stderr().write_all(line.as_bytes()).unwrap();
+    None
 }

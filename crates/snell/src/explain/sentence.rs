@@ -2,10 +2,9 @@
 
 use super::angles::angles;
 use super::path::SKY;
-use super::{How, Leg, Names, Path};
+use super::{How, Leg, Names, Path, by_path};
 use crate::film::Rgb;
-use crate::trace::PixelTrace;
-use indexmap::IndexMap;
+use crate::trace::{PixelTrace, RayKind, RayTree};
 
 /// Parts that are named; the rest is summed up.
 const NAMED: usize = 3;
@@ -56,43 +55,28 @@ pub fn color_name(color: Rgb) -> &'static str {
     }
 }
 
-/// The parts of a pixel by their paths, the strongest first: the sum of what they add to all samples, and the first node.
-pub(super) fn parts(names: &Names<'_>, trace: &PixelTrace) -> Vec<(Path, Rgb, (usize, usize))> {
-    let mut parts: IndexMap<Path, (Rgb, (usize, usize))> = IndexMap::new();
-    for (sample, tree) in trace.samples.iter().enumerate() {
-        for (number, node) in tree.nodes.iter().enumerate().filter(|(_, n)| n.contribution != Rgb::gray(0.0)) {
-            let part = parts.entry(Path::of(names, tree, number)).or_insert((Rgb::gray(0.0), (sample, number)));
-            part.0 = part.0 + node.contribution;
-        }
-    }
-    let mut parts: Vec<_> = parts.into_iter().map(|(path, (sum, first))| (path, sum, first)).collect();
-    // Stable: of equally strong ones the one that comes first in the order of addition.
-    parts.sort_by(|a, b| b.1.mean().abs().total_cmp(&a.1.mean().abs()));
-    parts
-}
-
 /// The sentence.
 pub(super) fn of(names: &Names<'_>, trace: &PixelTrace) -> String {
-    let parts = parts(names, trace);
-    // Light may be negative, in the colours of single wavelengths.
-    let total: f64 = parts.iter().map(|(_, sum, _)| sum.mean().abs()).sum();
-    let color = color_name(trace.radiance);
-    let Some((strongest, sum, (sample, node))) = parts.first() else {
+    let mut parts = by_path(names, trace);
+    // Light may be negative, in the colours of single wavelengths. Of equally strong parts the first stays the first.
+    parts.sort_by(|a, b| b.1.mean().abs().total_cmp(&a.1.mean().abs()));
+    let total: f64 = parts.iter().map(|(_, sum)| sum.mean().abs()).sum();
+    let Some((strongest, sum)) = parts.first() else {
         return "Black because no ray of this pixel found any light.".to_owned();
     };
     let share = |sum: f64| if parts.len() == 1 { "all".to_owned() } else { percent(sum / total) };
     let mut clauses = vec![format!(
         "{} because {} of this pixel is {}{}",
-        capitalized(color),
+        capitalized(color_name(trace.radiance)),
         share(sum.mean()),
         what(names, strongest),
-        bending(trace, *sample, *node)
+        bending(names, trace, strongest)
     )];
-    for (path, sum, _) in parts.iter().take(NAMED).skip(1) {
+    for (path, sum) in parts.iter().take(NAMED).skip(1) {
         clauses.push(format!("{} is {}", share(sum.mean()), what(names, path)));
     }
     if parts.len() > NAMED {
-        let rest: f64 = parts[NAMED..].iter().map(|(_, sum, _)| sum.mean()).sum();
+        let rest: f64 = parts[NAMED..].iter().map(|(_, sum)| sum.mean()).sum();
         let others = parts.len() - NAMED;
         clauses.push(format!("{} comes by {others} other way{}", share(rest), if others == 1 { "" } else { "s" }));
     }
@@ -103,10 +87,8 @@ pub(super) fn of(names: &Names<'_>, trace: &PixelTrace) -> String {
 fn what(names: &Names<'_>, path: &Path) -> String {
     let end = match path.end.as_str() {
         SKY => "the background".to_owned(),
-        name => match path.legs.last() {
-            None => format!("{}{}`{name}` itself", kind(names, name), ""),
-            Some(_) => format!("{}`{name}`", kind(names, name)),
-        },
+        name if path.legs.is_empty() => format!("{}`{name}` itself", kind(names, name)),
+        name => format!("{}`{name}`", kind(names, name)),
     };
     let mut way: Vec<(String, u32)> = Vec::new();
     for Leg { object, how } in &path.legs {
@@ -139,12 +121,16 @@ fn kind(names: &Names<'_>, name: &str) -> &'static str {
     if is_sphere && !name.starts_with("sphere") { "the sphere " } else { "" }
 }
 
-/// How the strongest path is bent where it first goes into something.
-fn bending(trace: &PixelTrace, sample: usize, node: usize) -> String {
-    let tree = &trace.samples[sample];
+/// How a path is bent where it first goes into something.
+fn bending(names: &Names<'_>, trace: &PixelTrace, path: &Path) -> String {
+    let mut ends = trace.samples.iter().flat_map(|tree| (0..tree.nodes.len()).map(move |node| (tree, node)));
+    let shows = |&(tree, node): &(&RayTree, usize)| {
+        tree.nodes[node].contribution != Rgb::gray(0.0) && Path::of(names, tree, node) == *path
+    };
+    let Some((tree, node)) = ends.find(shows) else { return String::new() };
     let way = std::iter::successors(Some(node), |&n| tree.nodes[n].parent);
     let hits = way.filter_map(|n| tree.nodes[n].parent.map(|parent| (n, parent)));
-    let first = hits.filter(|&(child, _)| tree.nodes[child].kind == crate::trace::RayKind::Refracted).last();
+    let first = hits.filter(|&(child, _)| tree.nodes[child].kind == RayKind::Refracted).last();
     let Some((_, at)) = first else { return String::new() };
     let Some(hit) = &tree.nodes[at].hit else { return String::new() };
     let bent = angles(tree.nodes[at].dir, hit);

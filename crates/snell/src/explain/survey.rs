@@ -2,7 +2,7 @@
 
 use super::{Names, Path};
 use crate::film::Rgb;
-use crate::render::trace_pixel;
+use crate::render::PixelTracer;
 use crate::scene::Scene;
 use crate::threads;
 use crate::trace::{PixelTrace, mean};
@@ -41,7 +41,8 @@ fn rows<T: Send>(
     let [width, height] = world.camera.size;
     let count = AtomicU64::new(0);
     let row = |y: u32| {
-        let pixels: Vec<T> = (0..width).filter_map(|x| trace_pixel(world, x, y)).map(|trace| of(&trace)).collect();
+        let mut tracer = PixelTracer::new(world);
+        let pixels: Vec<T> = (0..width).filter_map(|x| tracer.trace(x, y)).map(|trace| of(&trace)).collect();
         done(count.fetch_add(1, Ordering::Relaxed) + 1);
         pixels
     };

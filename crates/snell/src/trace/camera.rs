@@ -68,15 +68,16 @@ impl<'a> CameraRays<'a> {
         let [across, up] = self.places.columns_mut();
         let rows = across.chunks_mut(tile.width as usize).zip(up.chunks_mut(tile.width as usize));
         for (y, (across, up)) in (tile.y..).zip(rows) {
-            up.fill(self.camera.up(y.into()));
-            for (x, place) in (tile.x..).zip(across.iter_mut()) {
-                *place = self.camera.across(x.into());
-            }
-            if let Some(seed) = self.spread {
-                for (x, (across, up)) in (tile.x..).zip(across.iter_mut().zip(up)) {
-                    let [right, down] = sampler::offset(seed, [x, y], sample);
-                    (*across, *up) = (self.camera.across(f64::from(x) + right), self.camera.up(f64::from(y) + down));
+            let Some(seed) = self.spread else {
+                up.fill(self.camera.up(y.into()));
+                for (x, place) in (tile.x..).zip(across) {
+                    *place = self.camera.across(x.into());
                 }
+                continue;
+            };
+            for (x, (across, up)) in (tile.x..).zip(across.iter_mut().zip(up)) {
+                let [right, down] = sampler::offset(seed, [x, y], sample);
+                (*across, *up) = (self.camera.across(f64::from(x) + right), self.camera.up(f64::from(y) + down));
             }
         }
         self.cone = Cone::around(self.camera, tile);

@@ -29,7 +29,7 @@ const RAYS_PER_PIXEL: u32 = 1 << 18;
 /// A worker: it owns the queues, which are used again for every tile.
 #[derive(Debug)]
 pub(crate) struct Tracer<'a, L, O> {
-    world: &'a World,
+    pub world: &'a World,
     /// Set by somebody else to stop as soon as possible.
     cancel: Option<&'a AtomicBool>,
     pub observer: O,

@@ -52,9 +52,8 @@ impl Observer for Recorder {
             let share = light.spot.as_ref().map_or(1.0, |spot| spot.share(wi));
             let [diffuse, highlight] =
                 if lit { light_on::<f64>(&batch, light, shadow, row) } else { [Rgb::black(); 2] };
-            let arrives = if lit { shadow.left(row).unwrap_or(Rgb::gray(1.0)) * share } else { Rgb::black() };
+            let transmittance = if lit { shadow.left(row).unwrap_or(Rgb::gray(1.0)) * share } else { Rgb::black() };
             let between = if facing && share > 0.0 { between(world, &batch, wi, distance) } else { Vec::new() };
-            let transmittance = arrives;
             self.lights[row].push(Lit { wi, distance, facing, transmittance, between, diffuse, highlight });
         }
     }

@@ -106,14 +106,9 @@ pub struct RayTree {
 impl RayTree {
     /// The contributions added up in the engine's order: the sample, bit for bit.
     pub fn sum(&self) -> Rgb {
-        self.sum_of(|_| true)
-    }
-
-    /// The same of some of the nodes, by their numbers.
-    pub fn sum_of(&self, chosen: impl Fn(usize) -> bool) -> Rgb {
         // What adds nothing is not added: 0 and -0 are not the same bits.
-        let all = self.nodes.iter().enumerate().filter(|(number, node)| node.adds && chosen(*number));
-        all.fold(Rgb::black(), |sum, (_, node)| sum + node.contribution)
+        let contributions = self.nodes.iter().filter(|node| node.adds).map(|node| node.contribution);
+        contributions.fold(Rgb::black(), |sum, contribution| sum + contribution)
     }
 }
 
@@ -129,16 +124,9 @@ pub struct PixelTrace {
 impl PixelTrace {
     /// The trees added up in the engine's order: the pixel, bit for bit.
     pub fn sum(&self) -> Rgb {
-        self.sum_of(|_, _| true)
-    }
-
-    /// The same of some of the nodes, by the numbers of their samples and their own.
-    pub fn sum_of(&self, chosen: impl Fn(usize, usize) -> bool) -> Rgb {
-        let of = |(sample, tree): (usize, &RayTree)| tree.sum_of(|node| chosen(sample, node));
-        let mut sums = self.samples.iter().enumerate().map(of);
-        match self.samples.len() {
-            1 => sums.next().unwrap_or_default(),
-            count => mean(sums.fold(Rgb::black(), |sum, sample| sum + sample), count as u32),
+        match self.samples.as_slice() {
+            [only] => only.sum(),
+            all => mean(all.iter().fold(Rgb::black(), |sum, tree| sum + tree.sum()), all.len() as u32),
         }
     }
 }

@@ -270,7 +270,7 @@ impl World {
             self.solids.push(Solid {
                 medium,
                 inward: false,
-                touches: true,
+                touches: false,
                 between_faces_of: Some(material),
                 primitive: NO_PRIMITIVE,
                 bounds,

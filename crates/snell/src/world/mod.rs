@@ -180,6 +180,13 @@ impl World {
         self.objects.last().map_or(0, |object| (object.first + object.count) as usize)
     }
 
+    /// The names of its objects, each once where several in a row have it.
+    pub fn object_names(&self) -> Vec<&str> {
+        let mut names: Vec<&str> = self.objects.iter().map(|object| object.name.as_str()).collect();
+        names.dedup();
+        names
+    }
+
     /// The object that a primitive belongs to.
     pub fn object_of(&self, primitive: u32) -> Option<&Object> {
         let after = self.objects.partition_point(|o| o.first <= primitive);
