@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Renders the pictures of the documentation anew: the models of light side by side, and the gallery.
+# Makes the pictures of the documentation anew: the models of light side by side, the gallery, the page that explains a pixel.
 source "$(dirname "$0")/lib.sh"
 
 # 240 pixels high, in the scene's shape.
@@ -22,3 +22,9 @@ for scene in scenes/gallery/*.toml; do
     printf '%s\n' "$name"
     target/ci/snell render "$scene" --size "$(picture_size "$scene")" --spp 4 --quiet -o "docs/pictures/gallery/$name.png"
 done
+need_node
+need_chromium
+[ -d viewer/node_modules ] || (cd viewer && npm ci --silent --no-audit --no-fund)
+mkdir -p out
+target/ci/snell explain lecture/default 190,300 --html out/why.html
+(cd viewer && node test/screenshot.mjs ../out/why.html ../docs/pictures/explain.png 'Refracted ray hits green')
