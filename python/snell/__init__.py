@@ -11,16 +11,19 @@ Green because 53 % of this pixel is the sphere `green`, seen through `glass` (in
 
 from . import optics
 from ._native import __version__
+from .channels import Channels
 from .errors import OpticsError, PictureError, RenderError, SceneError, SnellError, SnellWarning
+from .interact import Interactive, interact
 from .parts import Box, Camera, Globe, Lathe, Light, Material, Mesh, Plane, Render, Sky, Sphere, Texture
 from .picture import Difference, Picture, Sightings
 from .scene import Scene, scenes
 from .sweep import sweep
-from .tree import Hit, LightThere, Local, Node, RayTree, Sample
+from .tree import Figure, Hit, LightThere, Local, Node, RayTree, Sample
+from .view import View
 
 __all__ = [
-    "Box", "Camera", "Difference", "Globe", "Hit", "Lathe", "Light", "LightThere", "Local", "Material", "Mesh", "Node",
-    "OpticsError", "Picture", "PictureError", "Plane", "RayTree", "Render", "RenderError", "Sample", "Scene",
-    "SceneError", "Sightings", "Sky", "SnellError", "SnellWarning", "Sphere", "Texture", "__version__", "optics",
-    "scenes", "sweep",
+    "Box", "Camera", "Channels", "Difference", "Figure", "Globe", "Hit", "Interactive", "Lathe", "Light", "LightThere",
+    "Local", "Material", "Mesh", "Node", "OpticsError", "Picture", "PictureError", "Plane", "RayTree", "Render",
+    "RenderError", "Sample", "Scene", "SceneError", "Sightings", "Sky", "SnellError", "SnellWarning", "Sphere",
+    "Texture", "View", "__version__", "interact", "optics", "scenes", "sweep",
 ]  # fmt: skip

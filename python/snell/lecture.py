@@ -20,7 +20,7 @@ from copy import copy
 from typing import Any
 
 from .errors import SceneError
-from .parts import Box, Camera, Globe, Light, Material, Mesh, Plane, Render, Sphere
+from .parts import Box, Camera, Globe, Lathe, Light, Material, Mesh, Plane, Render, Sphere
 from .picture import Picture
 from .scene import Scene
 
@@ -79,8 +79,8 @@ def _scene(variables: Mapping[str, Any]) -> Scene:
         return variables[found]
 
     objects = list(get("objs"))
-    if not all(isinstance(thing, Sphere | Mesh | Plane | Box) for thing in objects):
-        raise SceneError([("objs", "expected globes, meshes, planes and boxes", None)])
+    if not all(isinstance(thing, Sphere | Mesh | Plane | Box | Lathe) for thing in objects):
+        raise SceneError([("objs", "expected globes, meshes, planes, boxes and lathes", None)])
     return Scene(
         settings=Render("lecture", max_depth=variables.get("trace_depth", 6), transfer="linear"),
         camera=get(*_CAMERAS),
@@ -93,4 +93,5 @@ def _scene(variables: Mapping[str, Any]) -> Scene:
         mesh=[thing for thing in objects if isinstance(thing, Mesh)],
         plane=[thing for thing in objects if isinstance(thing, Plane)],
         box=[thing for thing in objects if isinstance(thing, Box)],
+        lathe=[thing for thing in objects if isinstance(thing, Lathe)],
     )

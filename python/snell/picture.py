@@ -5,20 +5,26 @@ from __future__ import annotations
 import operator
 import os
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 from . import _native
+from .channels import Channels
 from .errors import PictureError
+from .progress import watcher
 from .tree import RayTree
+
+if TYPE_CHECKING:
+    from .view import View
 
 
 @dataclass(frozen=True, eq=False)
 class Sightings:
-    """Where an object is seen.
+    """Where an object is seen; notebooks show the mask.
 
     Attributes
     ----------
@@ -31,10 +37,13 @@ class Sightings:
     paths: list[tuple[str, int]]
     mask: NDArray[np.float64]
 
+    def _repr_png_(self) -> bytes:
+        return _native.png(self.mask[..., None].repeat(3, axis=2))
+
 
 @dataclass(frozen=True, eq=False)
 class Difference:
-    """What two pictures differ in.
+    """What two pictures differ in; notebooks show where, the largest difference in white.
 
     Attributes
     ----------
@@ -53,6 +62,9 @@ class Difference:
 
     def __repr__(self) -> str:
         return f"{self.pixels} of {self.total} pixels differ, by {self.largest:g} at most"
+
+    def _repr_png_(self) -> bytes:
+        return _native.png(np.abs(self.array) / (self.largest or 1.0))
 
 
 class Picture:
@@ -85,6 +97,16 @@ class Picture:
     def height(self) -> int:
         """Rows."""
         return self._native.region[3]
+
+    @property
+    def region(self) -> tuple[int, int, int, int]:
+        """Left, top, width and height in the whole picture."""
+        return self._native.region
+
+    @property
+    def full_size(self) -> tuple[int, int]:
+        """Width and height of the whole picture, of which this may be a part."""
+        return self._native.full_size
 
     @property
     def finished(self) -> bool:
@@ -159,6 +181,18 @@ class Picture:
             raise PictureError([("crop", message, None)])
         return Picture(part, self.name)
 
+    @cached_property
+    def channels(self) -> Channels:
+        """Depth, normals, objects, and how many surfaces each pixel takes; traced when they are first asked for."""
+        with watcher(True, self.name) as watch:
+            return Channels(*self._native.channels(watch), self)
+
+    def view(self, *, height: str = "34rem") -> View:
+        """Show the scene in 3D, the picture in front of its camera: `snell.View`."""
+        from .view import View  # noqa: PLC0415 # a view has a picture, and a picture can be viewed
+
+        return View(self, height=height)
+
     def explain(self, x: int, y: int) -> RayTree:
         """Say why a pixel has its colour.
 
@@ -178,7 +212,7 @@ class Picture:
         left, top = self._native.region[:2]
         tree = self._native.explain(left + operator.index(x), top + operator.index(y))
         assert tree is not None, "the pixel is there"
-        return RayTree(tree)
+        return RayTree(tree, self)
 
     def _repr_png_(self) -> bytes:
         return self._native.png()

@@ -8,7 +8,7 @@ import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -18,6 +18,9 @@ from .parts import Box, Camera, Lathe, Light, Material, Mesh, Plane, Render, Sky
 from .picture import Picture, Sightings
 from .progress import watcher
 from .values import Color, Value, plain
+
+if TYPE_CHECKING:
+    from .view import View
 
 _LISTS: Mapping[str, type[Value]] = {
     "light": Light, "sphere": Sphere, "mesh": Mesh, "plane": Plane, "box": Box, "lathe": Lathe,
@@ -272,8 +275,32 @@ class Scene(Value):
             warnings.warn("stopped: the picture is what was done by then", SnellWarning, stacklevel=2)
         return picture
 
-    def find(self, name: str) -> Sightings:
+    def view(self, *, height: str = "34rem", **how: Any) -> View:
+        """Show the scene in 3D, in a notebook: objects, lights, the camera with its picture, and rays of pixels.
+
+        Parameters
+        ----------
+        height : str
+            Of the view, as CSS has it.
+        **how
+            What `render` takes.
+
+        Examples
+        --------
+        >>> Scene.load("gallery/ball").view(width=64)
+        <View of gallery/ball, 64 x 43>
+        """
+        return self.render(**how).view(height=height)
+
+    def find(self, name: str, *, progress: bool | Callable[[int, int, int], object] = True) -> Sightings:
         """Return where an object is seen, and by which ways.
+
+        Parameters
+        ----------
+        name : str
+            The object.
+        progress
+            As for `render`.
 
         Raises
         ------
@@ -286,7 +313,9 @@ class Scene(Value):
         >>> found.paths[0]
         ('camera → glass(refract) → green', 12448)
         """
-        paths, mask = self._compiled().find(name)
+        compiled = self._compiled()
+        with watcher(progress, self.name) as watch:
+            paths, mask = compiled.find(name, watch)
         return Sightings(paths, mask)
 
 

@@ -5,12 +5,17 @@ from __future__ import annotations
 import html
 import json
 import os
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from . import _native
+
+if TYPE_CHECKING:
+    from .picture import Picture
+    from .view import View
 
 Numbers = tuple[float, float, float]
 
@@ -89,6 +94,20 @@ class Sample:
     nodes: tuple[Node, ...]
 
 
+class Figure:
+    """A drawing, which notebooks show; `svg` is its text."""
+
+    def __init__(self, svg: str) -> None:
+        self.svg = svg
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write it as .svg."""
+        Path(path).write_text(self.svg, encoding="utf-8")
+
+    def _repr_svg_(self) -> str:
+        return self.svg
+
+
 class RayTree:
     """Why a pixel has its colour, as `Picture.explain` says it.
 
@@ -114,8 +133,9 @@ class RayTree:
     ['green', 'red']
     """
 
-    def __init__(self, native: _native.NativeTree) -> None:
+    def __init__(self, native: _native.NativeTree, picture: Picture) -> None:
         self._native = native
+        self._picture = picture
         table = json.loads(native.json())
         self.scene: str = table["scene"]
         self.integrator: str = table["integrator"]
@@ -142,10 +162,20 @@ class RayTree:
         """Return a page with the tree and its rays in 3D, which needs no network."""
         return self._native.html()
 
+    def figure(self) -> Figure:
+        """Draw the strongest way: at each surface the normal, the rays with their angles, the critical angle."""
+        return Figure(self._native.figure())
+
+    def view(self, *, height: str = "34rem") -> View:
+        """Show its rays in the scene in 3D: `snell.View`."""
+        from .view import View  # noqa: PLC0415 # a view has a tree, and a tree can be viewed
+
+        return View(self._picture, self, height=height)
+
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write it as .html, .json, or else as text."""
+        """Write it as .html, .json, .svg, or else as text."""
         target = Path(path)
-        forms = {".html": self.to_html, ".json": self.to_json}
+        forms = {".html": self.to_html, ".json": self.to_json, ".svg": self._native.figure}
         target.write_text(forms.get(target.suffix, self.text)(), encoding="utf-8")
 
     def __str__(self) -> str:
@@ -155,7 +185,13 @@ class RayTree:
         return f"<RayTree of pixel {self.pixel[0]},{self.pixel[1]} of {self.scene}>"
 
     def _repr_html_(self) -> str:
-        return f"<pre>{html.escape(self.text())}</pre>"
+        patch = r'<span style="background:rgb(\1,\2,\3);border-radius:2px">&nbsp;&nbsp;</span>'
+        text = html.escape(self._native.text(None, None, True))
+        return f"<pre>{_TERMINAL_PATCH.sub(patch, text)}</pre>"
+
+
+#: Two blanks on a coloured ground, as terminals write them.
+_TERMINAL_PATCH = re.compile("\x1b\\[48;2;([0-9]+);([0-9]+);([0-9]+)m  \x1b\\[0m")
 
 
 def _tuples(table: Mapping[str, Any]) -> dict[str, Any]:

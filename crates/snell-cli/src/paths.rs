@@ -6,7 +6,7 @@ use crate::say::{FAILED, Failure, OrFail, Outcome, USAGE};
 use snell::explain::{Path as Way, layers, only};
 use snell::film::transfer::Encoding;
 use snell::film::{Crop, Film, Rgb};
-use snell::render::Progress;
+use snell::render::Options;
 use snell::world::World;
 use snell_formats::Report;
 use snell_formats::load::Loaded;
@@ -21,16 +21,14 @@ pub fn run(world: &World, loaded: &Loaded, args: &RenderArgs, output: &Path) -> 
     }
     let [width, height] = world.camera.size;
     let reporter = Reporter::new(args.progress, args.quiet, "ways of light");
-    let done = |rows: u64| {
-        let (pixels, total_pixels) = (rows * u64::from(width), u64::from(width) * u64::from(height));
-        reporter.update(Progress { pixels, total_pixels, rays: 0 });
-    };
+    let update = |progress| reporter.update(progress);
+    let options = Options { threads: args.threads.into(), progress: Some(&update), ..Options::default() };
     if let Some(text) = &args.only {
         let way = Way::parse(text).map_err(|e| {
             let help = "like --only \"glass(refract) green\"; snell render --paths 20 lists the ways of a picture";
             Failure::new(USAGE, Report::error(e.to_string()).help(help))
         })?;
-        let pixels = only(world, &loaded.scene, &way, args.threads.into(), &done);
+        let pixels = only(world, &loaded.scene, &way, &options).unwrap_or_default();
         reporter.finish();
         let seen = pixels.iter().filter(|pixel| **pixel != Rgb::gray(0.0)).count();
         say(args, &format!("{}: {way}, in {seen} of {} pixels", output.display(), pixels.len()));
@@ -43,7 +41,7 @@ pub fn run(world: &World, loaded: &Loaded, args: &RenderArgs, output: &Path) -> 
         let report = Report::error("only EXR pictures have layers").help("name one, like -o paths.exr");
         return Err(Failure::new(USAGE, report));
     }
-    let split = layers(world, &loaded.scene, most, args.threads.into(), &done);
+    let split = layers(world, &loaded.scene, most, &options).unwrap_or_default();
     reporter.finish();
     let total: f64 = split.picture.iter().map(|c| c.mean()).sum();
     // A black picture has no shares.

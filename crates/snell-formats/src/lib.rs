@@ -10,6 +10,7 @@
 pub mod builtin;
 pub mod disk;
 pub mod driver;
+pub mod figure;
 pub mod load;
 pub mod model;
 pub mod nff;

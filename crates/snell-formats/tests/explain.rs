@@ -2,8 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-use snell::explain::{Ending, Explanation, Names, Path, explain, find, layers};
-use snell::film::Rgb;
+use snell::explain::{Ending, Explanation, Names, Path, channels, explain, find, hits, layers};
+use snell::film::{Crop, Rgb};
 use snell::render::{Options, render, trace_pixel};
 use snell::scene::{Integrator, Scene, Shadows};
 use snell::world::World;
@@ -131,7 +131,7 @@ fn layers_add_up_to_the_picture() {
     for (name, scene) in scenes("gallery/bubbles", 24).into_iter().chain(scenes("lecture/default", 32)) {
         let world = World::new(&scene).unwrap();
         let film = render(&world, &Options::default()).unwrap().film;
-        let split = layers(&world, &scene, 5, 0, &|_| {});
+        let split = layers(&world, &scene, 5, &Options::default()).unwrap();
         assert_eq!(split.picture, film.pixels, "{name}");
         let left = split.rest.iter().any(|c| *c != Rgb::gray(0.0));
         // Bubbles have few ways in the lecture's model, which refracts only in spheres; the others have more than five.
@@ -158,7 +158,7 @@ fn an_object_is_found_in_all_pixels_that_show_it() {
     let mut scene = load("lecture/default", &LoadOptions::default()).unwrap().scene;
     scene.render.size = [96, 96];
     let world = World::new(&scene).unwrap();
-    let found = find(&world, &scene, "green", 2, &|_| {});
+    let found = find(&world, &scene, "green", &Options { threads: 2, ..Options::default() }).unwrap();
     let names = Names { world: &world, scene: &scene };
     let mut counts: BTreeMap<Path, u64> = BTreeMap::new();
     for number in 0..96 * 96 {
@@ -179,6 +179,33 @@ fn an_object_is_found_in_all_pixels_that_show_it() {
     // Green is large, and small and upside down in the glass.
     let (direct, through) = (named("camera → green").unwrap(), named("camera → glass(refract) → green").unwrap());
     assert!(direct > 3 * through && through > 30, "{direct} directly, {through} through the glass");
+}
+
+/// What the channels say of a pixel is what its explanation says, also of a part of the picture; and ^C ends them.
+#[test]
+fn channels_agree_with_explanations() {
+    for (name, scene) in scenes("lecture/default", 40).into_iter().chain(scenes("gallery/ice", 24)) {
+        let world = World::new(&scene).unwrap();
+        let part = Crop { x: 3, y: 5, width: 20, height: 17 };
+        let options = Options { crop: Some(part), ..Options::default() };
+        let (found, met) = (channels(&world, &options).unwrap(), hits(&world, &options).unwrap());
+        let mut missed = 0;
+        for i in 0..(20 * 17) as usize {
+            let (x, y) = (3 + i as u32 % 20, 5 + i as u32 / 20);
+            let (explanation, _) = explain(&world, &scene, &name, x, y).unwrap();
+            let nodes = explanation.samples.iter().flat_map(|s| &s.nodes);
+            assert_eq!(met[i] as usize, nodes.filter(|n| n.hit.is_some()).count(), "{name}, pixel {x},{y}");
+            let object = usize::try_from(found.object[i]).ok().map(|object| world.objects[object].name.as_str());
+            let first = explanation.samples[0].nodes[0].hit.as_ref();
+            assert_eq!(object, first.map(|hit| hit.object.as_str()), "{name}, pixel {x},{y}");
+            assert_eq!(found.depth[i], first.map_or(f64::INFINITY, |hit| hit.t));
+            assert_eq!(found.normal[i], first.map_or([0.0; 3], |hit| hit.normal));
+            missed += u32::from(first.is_none());
+        }
+        assert!(missed < 20 * 17, "{name}: nothing is seen");
+        let stop = std::sync::atomic::AtomicBool::new(true);
+        assert_eq!(channels(&world, &Options { cancel: Some(&stop), ..Options::default() }), None);
+    }
 }
 
 /// In the middle of the lecture's picture: the sentence names what is there, and the light that is not.

@@ -1,17 +1,25 @@
 //! The tree of a pixel, and where an object is seen.
 
 use crate::errors::raise;
+use crate::picture::shaped;
 use crate::scene::Ready;
+use crate::watch::{unless_stopped, watched};
 use numpy::PyArray2;
-use numpy::ndarray::Array2;
 use pyo3::prelude::*;
 use snell::explain::text::{Style, text};
 use snell::explain::{Explanation, Names, Sightings, explain, find as find_object};
+use snell_formats::figure::figure;
 use snell_formats::page::page;
 use std::sync::Arc;
 
 /// The viewer, built from `viewer/` by `npm run bundle`.
 const VIEWER: &str = include_str!("../../snell-cli/assets/snell-viewer.js");
+
+/// The viewer as a script, for notebooks.
+#[pyfunction]
+pub fn viewer_script() -> &'static str {
+    VIEWER
+}
 
 /// Why a pixel has its colour.
 #[pyclass(frozen)]
@@ -43,6 +51,11 @@ impl NativeTree {
         text(&self.explanation, style)
     }
 
+    /// The drawing of the angles, as SVG.
+    fn figure(&self) -> String {
+        figure(&self.explanation)
+    }
+
     /// The page with the rays in 3D.
     fn html(&self, py: Python<'_>) -> String {
         let names = Names { world: &self.ready.world, scene: &self.ready.scene };
@@ -54,7 +67,7 @@ impl NativeTree {
 pub type Seen<'py> = (Vec<(String, u64)>, Bound<'py, PyArray2<f64>>);
 
 /// Where an object is seen.
-pub fn find<'py>(py: Python<'py>, ready: &Ready, object: &str) -> PyResult<Seen<'py>> {
+pub fn find<'py>(py: Python<'py>, ready: &Ready, object: &str, progress: Option<&Py<PyAny>>) -> PyResult<Seen<'py>> {
     let Ready { world, scene, .. } = ready;
     let mut known = world.object_names();
     if !known.contains(&object) {
@@ -62,10 +75,9 @@ pub fn find<'py>(py: Python<'py>, ready: &Ready, object: &str) -> PyResult<Seen<
         let message = format!("no object is called `{object}`");
         return Err(raise(py, "SceneError", vec![(None, message, Some(format!("objects: {}", known.join(", "))))]));
     }
-    let Sightings { paths, mask } = py.detach(|| find_object(world, scene, object, 0, &|_| {}));
+    let work = watched(py, ready, 0, None, progress, |options| find_object(world, scene, object, options));
+    let Sightings { paths, mask } = unless_stopped(work)?;
     let paths = paths.into_iter().map(|(path, pixels)| (path.to_string(), pixels)).collect();
     let [width, height] = world.camera.size.map(|length| length as usize);
-    let mask = Array2::from_shape_vec((height, width), mask)
-        .map_err(|error| pyo3::exceptions::PyRuntimeError::new_err(error.to_string()))?;
-    Ok((paths, PyArray2::from_owned_array(py, mask)))
+    Ok((paths, shaped(py, [height, width], mask)?))
 }

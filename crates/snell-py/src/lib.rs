@@ -10,6 +10,7 @@ mod explain;
 mod optics;
 mod picture;
 mod scene;
+mod watch;
 
 use pyo3::prelude::*;
 
@@ -19,5 +20,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     scene::register(module)?;
     optics::register(module)?;
     module.add_class::<picture::NativePicture>()?;
+    module.add_function(wrap_pyfunction!(picture::png, module)?)?;
+    module.add_function(wrap_pyfunction!(explain::viewer_script, module)?)?;
     module.add_class::<explain::NativeTree>()
 }

@@ -1,27 +1,24 @@
-//! Rendering without Python's lock, and pictures whose numbers Python sees where they are.
+//! Pictures, whose numbers Python sees where they are.
 
 use crate::errors::{self, raise};
 use crate::explain::NativeTree;
 use crate::scene::Ready;
-use numpy::ndarray::ArrayView3;
-use numpy::{PyArray3, PyArrayMethods};
-use pyo3::exceptions::PyKeyboardInterrupt;
+use crate::watch::{unless_stopped, watched};
+use numpy::ndarray::{Array, ArrayView3, Dim, Dimension, ErrorKind, IntoDimension, ShapeError};
+use numpy::{PyArray, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray3};
+use pyo3::exceptions::{PyKeyboardInterrupt, PyRuntimeError};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use serde_json::json;
-use snell::film::transfer::Encoding;
-use snell::film::{Crop, Film};
-use snell::render::{Options, Progress, RenderError, Rendered, render};
+use snell::explain::{Channels, Names, ViewScene, channels, hits};
+use snell::film::transfer::{Encoding, Rounding, Transfer};
+use snell::film::{Crop, Film, Rgb};
+use snell::render::{RenderError, Rendered, render};
 use snell_formats::picture::{self, Format};
 use snell_formats::{Report, disk};
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::mpsc::{RecvTimeoutError, channel};
-use std::time::{Duration, Instant};
-
-/// So often Python is asked whether someone has pressed ^C.
-const LOOK: Duration = Duration::from_millis(50);
+use std::time::Instant;
 
 /// A film, and the scene that it shows.
 #[pyclass(frozen)]
@@ -33,25 +30,10 @@ pub struct NativePicture {
 }
 
 impl NativePicture {
-    /// Renders on threads of its own, while this one asks Python for signals. ^C ends it with what is done by then.
+    /// Renders, and ^C ends it with what is done by then.
     pub fn render(py: Python<'_>, ready: Arc<Ready>, threads: usize, progress: Option<&Py<PyAny>>) -> PyResult<Self> {
-        let cancel = AtomicBool::new(false);
-        let [pixels, rays] = [AtomicU64::new(0), AtomicU64::new(0)];
-        let [width, height] = ready.world.camera.size.map(u64::from);
-        let count = |done: Progress| {
-            pixels.fetch_max(done.pixels, Ordering::Relaxed);
-            rays.fetch_max(done.rays, Ordering::Relaxed);
-        };
-        let options = Options { threads, progress: Some(&count), cancel: Some(&cancel), ..Options::default() };
-        let look = || {
-            Python::attach(|py| {
-                py.check_signals()?;
-                let seen = (pixels.load(Ordering::Relaxed), width * height, rays.load(Ordering::Relaxed));
-                progress.map_or(Ok(()), |progress| progress.call1(py, seen).map(drop))
-            })
-        };
         let started = Instant::now();
-        let (rendered, stopped) = py.detach(|| watched(|| render(&ready.world, &options), &cancel, look));
+        let (rendered, stopped) = watched(py, &ready, threads, None, progress, |options| render(&ready.world, options));
         let seconds = started.elapsed().as_secs_f64();
         match stopped {
             Some(error) if !error.is_instance_of::<PyKeyboardInterrupt>(py) => return Err(error),
@@ -60,6 +42,11 @@ impl NativePicture {
         let failed = |error: RenderError| raise(py, "RenderError", vec![(None, error.to_string(), None)]);
         let Rendered { film, statistics } = rendered.map_err(failed)?;
         Ok(Self { film, ready, seconds, rays: statistics.rays.total() })
+    }
+
+    /// Rows and columns.
+    fn shape(&self) -> [usize; 2] {
+        [self.film.crop.height as usize, self.film.crop.width as usize]
     }
 
     fn encoding(&self) -> Encoding {
@@ -81,35 +68,6 @@ impl NativePicture {
     }
 }
 
-/// Does some work on another thread and looks around meanwhile. What looking fails with ends the work.
-fn watched<T: Send, E: Send>(
-    work: impl FnOnce() -> T + Send,
-    cancel: &AtomicBool,
-    look: impl Fn() -> Result<(), E>,
-) -> (T, Option<E>) {
-    std::thread::scope(|scope| {
-        let (over, is_over) = channel::<()>();
-        let worker = scope.spawn(move || {
-            let result = work();
-            drop(over);
-            result
-        });
-        let mut stopped = None;
-        while is_over.recv_timeout(LOOK) == Err(RecvTimeoutError::Timeout) {
-            if stopped.is_none()
-                && let Err(error) = look()
-            {
-                cancel.store(true, Ordering::Relaxed);
-                stopped = Some(error);
-            }
-        }
-        match worker.join() {
-            Ok(result) => (result, stopped),
-            Err(panic) => std::panic::resume_unwind(panic),
-        }
-    })
-}
-
 #[pymethods]
 impl NativePicture {
     /// The film, height x width x 3, where it is: it lives as long as an array of it does, and cannot be written to.
@@ -118,8 +76,7 @@ impl NativePicture {
     fn array<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray3<f64>>> {
         let film = &slf.get().film;
         let shape = (film.crop.height as usize, film.crop.width as usize, 3);
-        let view = ArrayView3::from_shape(shape, film.numbers())
-            .map_err(|error| pyo3::exceptions::PyRuntimeError::new_err(error.to_string()))?;
+        let view = ArrayView3::from_shape(shape, film.numbers()).map_err(no_shape)?;
         // SAFETY: the film of a frozen class is neither moved nor changed while `slf` lives, which the array keeps alive, and
         // NumPy lets nobody write to it.
         let array = unsafe { PyArray3::borrow_from_array(&view, slf.clone().into_any()) };
@@ -132,6 +89,12 @@ impl NativePicture {
     fn region(&self) -> (u32, u32, u32, u32) {
         let Crop { x, y, width, height } = self.film.crop;
         (x, y, width, height)
+    }
+
+    /// Width and height of the whole picture.
+    #[getter]
+    fn full_size(&self) -> (u32, u32) {
+        self.film.full_size.into()
     }
 
     /// Is every pixel done?
@@ -177,10 +140,83 @@ impl NativePicture {
         Some(Self { film, ready: Arc::clone(&self.ready), seconds: self.seconds, rays: self.rays })
     }
 
+    /// What the camera's rays met: depth, normal, number of the object; and the names of the objects.
+    fn channels<'py>(&self, py: Python<'py>, progress: Option<Py<PyAny>>) -> PyResult<NativeChannels<'py>> {
+        let Ready { world, .. } = &*self.ready;
+        let crop = Some(self.film.crop);
+        let work = watched(py, &self.ready, 0, crop, progress.as_ref(), |options| channels(world, options));
+        let Channels { depth, normal, object } = unless_stopped(work)?;
+        let normal: Vec<f64> = normal.into_iter().flatten().collect();
+        let [height, width] = self.shape();
+        Ok((
+            shaped(py, [height, width], depth)?,
+            shaped(py, [height, width, 3], normal)?,
+            shaped(py, [height, width], object)?,
+            world.objects.iter().map(|object| object.name.clone()).collect(),
+        ))
+    }
+
+    /// How many surfaces the rays of each pixel met.
+    fn hits<'py>(&self, py: Python<'py>, progress: Option<Py<PyAny>>) -> PyResult<Bound<'py, PyArray2<u32>>> {
+        let Ready { world, .. } = &*self.ready;
+        let crop = Some(self.film.crop);
+        let work = watched(py, &self.ready, 0, crop, progress.as_ref(), |options| hits(world, options));
+        shaped(py, self.shape(), unless_stopped(work)?)
+    }
+
+    /// The scene as the viewer draws it, in JSON.
+    fn view(&self) -> String {
+        let Ready { scene, world, .. } = &*self.ready;
+        serde_json::to_string(&ViewScene::of(&Names { world, scene })).unwrap_or_default()
+    }
+
     /// Why a pixel of the whole picture has its colour.
     fn explain(&self, py: Python<'_>, x: u32, y: u32) -> Option<NativeTree> {
         py.detach(|| NativeTree::of(&self.ready, x, y))
     }
+}
+
+/// Depth, normal and object; the names of the objects.
+type NativeChannels<'py> =
+    (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray3<f64>>, Bound<'py, PyArray2<i32>>, Vec<String>);
+
+/// Numbers row by row as an array, which takes them over.
+pub fn shaped<T: numpy::Element, const N: usize>(
+    py: Python<'_>,
+    shape: [usize; N],
+    numbers: Vec<T>,
+) -> PyResult<Bound<'_, PyArray<T, Dim<[usize; N]>>>>
+where
+    Dim<[usize; N]>: Dimension,
+    [usize; N]: IntoDimension<Dim = Dim<[usize; N]>>,
+{
+    let array = Array::from_shape_vec(shape.into_dimension(), numbers).map_err(no_shape)?;
+    Ok(PyArray::from_owned_array(py, array))
+}
+
+fn no_shape(error: ShapeError) -> PyErr {
+    PyRuntimeError::new_err(error.to_string())
+}
+
+/// An array of height x width x 3, from 0 to 1, as a PNG of 8 bit.
+#[pyfunction]
+pub fn png<'py>(py: Python<'py>, array: PyReadonlyArray3<'py, f64>) -> PyResult<Bound<'py, PyBytes>> {
+    let array = array.as_array();
+    let (height, width, channels) = array.dim();
+    let size = u32::try_from(width).ok().zip(u32::try_from(height).ok()).filter(|_| channels == 3);
+    let Some((width, height)) = size else {
+        return Err(no_shape(ShapeError::from_kind(ErrorKind::IncompatibleShape)));
+    };
+    let failed_film =
+        |error: snell::film::FilmTooLarge| raise(py, "PictureError", vec![(None, error.to_string(), None)]);
+    let mut film = Film::new([width, height], Crop { x: 0, y: 0, width, height }).map_err(failed_film)?;
+    for (pixel, color) in film.pixels.iter_mut().zip(array.rows()) {
+        *pixel = Rgb::new(color[0], color[1], color[2]);
+    }
+    film.finished.fill(true);
+    let encoding = Encoding { transfer: Transfer::Linear, rounding: Rounding::Round };
+    let bytes = py.detach(|| picture::png_bytes(&film, encoding, None));
+    bytes.map(|bytes| PyBytes::new(py, &bytes)).map_err(|report| failed(py, &report))
 }
 
 fn failed(py: Python<'_>, report: &Report) -> PyErr {

@@ -182,8 +182,8 @@ impl NativeScene {
     }
 
     /// Where an object is seen.
-    fn find<'py>(&self, py: Python<'py>, object: String) -> PyResult<Seen<'py>> {
-        crate::explain::find(py, &self.0, &object)
+    fn find<'py>(&self, py: Python<'py>, object: String, progress: Option<Py<PyAny>>) -> PyResult<Seen<'py>> {
+        crate::explain::find(py, &self.0, &object, progress.as_ref())
     }
 }
 

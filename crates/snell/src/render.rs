@@ -141,6 +141,11 @@ impl<'a> PixelTracer<'a> {
         Self(Tracer::new(world, None, Recorder::default()))
     }
 
+    /// Rays of all kinds so far.
+    pub fn rays(&self) -> u64 {
+        self.0.statistics.rays.total()
+    }
+
     /// As [`trace_pixel`].
     pub fn trace(&mut self, x: u32, y: u32) -> Option<PixelTrace> {
         let [width, height] = self.0.world.camera.size;

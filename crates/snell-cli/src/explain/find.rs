@@ -7,7 +7,7 @@ use crate::say::{self, FAILED, Failure, OrFail, Outcome, USAGE};
 use snell::explain::find;
 use snell::film::transfer::{Encoding, Rounding, Transfer};
 use snell::film::{Crop, Film, Rgb};
-use snell::render::Progress;
+use snell::render::Options;
 use snell::world::World;
 use snell_formats::Report;
 use snell_formats::load::Loaded;
@@ -19,10 +19,10 @@ const LISTED: usize = 20;
 
 pub fn run(world: &World, loaded: &Loaded, object: &str, args: &ExplainArgs) -> Outcome {
     known_object(world, object)?;
-    let [width, height] = world.camera.size.map(u64::from);
     let reporter = Reporter::new(ProgressKind::Auto, false, "looking");
-    let done = |rows: u64| reporter.update(Progress { pixels: rows * width, total_pixels: width * height, rays: 0 });
-    let found = find(world, &loaded.scene, object, 0, &done);
+    let update = |progress| reporter.update(progress);
+    let options = Options { progress: Some(&update), ..Options::default() };
+    let found = find(world, &loaded.scene, object, &options).unwrap_or_default();
     reporter.finish();
     let mut text = String::new();
     if found.paths.is_empty() {

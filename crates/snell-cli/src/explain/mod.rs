@@ -3,13 +3,13 @@
 mod compare;
 mod find;
 mod light;
-mod svg;
 
 use crate::args::ExplainArgs;
 use crate::say::{self, FAILED, Failure, OrFail, Outcome, SCENE, USAGE};
 use snell::explain::text::{self, Style};
 use snell::explain::{Explanation, Names, explain};
 use snell::world::World;
+use snell_formats::figure::figure;
 use snell_formats::load::Loaded;
 use snell_formats::page::page;
 use snell_formats::{LoadOptions, Report, disk, load};
@@ -43,7 +43,7 @@ pub fn run(args: &ExplainArgs) -> Outcome {
         return write(file, &page(&explanation, &Names { world: &world, scene: &loaded.scene }, VIEWER));
     }
     if let Some(file) = &args.svg {
-        return write(file, &svg::picture(&explanation));
+        return write(file, &figure(&explanation));
     }
     if args.json {
         return say::print(&format!("{}\n", json(&explanation)));

@@ -3,13 +3,15 @@
 //! ```text
 //! render::trace_pixel ─▶ PixelTrace ─┬─▶ Explanation   with names, angles, bounds: the JSON form, and text
 //!  (the engine, recorded)            ├─▶ Path          camera → glass(refract) → green, of every contribution
-//!                                    └─▶ sentence      what a person would say first
+//!                                    ├─▶ sentence      what a person would say first
+//!                                    └─▶ Channels        what the camera's rays met, pixel by pixel
 //! ```
 //!
 //! Nothing here traces a ray or knows physics that the engine does not have: it names and adds up what was recorded.
 
 mod angles;
 mod bound;
+mod channels;
 mod document;
 mod path;
 mod sentence;
@@ -17,6 +19,7 @@ mod survey;
 pub mod text;
 mod view;
 
+pub use channels::{Channels, channels, hits};
 pub use document::{
     Ending, ExplainedHit, ExplainedLight, ExplainedNode, ExplainedSample, Explanation, LocalLight, NodeKind, explain,
 };

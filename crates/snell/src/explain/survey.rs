@@ -1,8 +1,8 @@
 //! All pixels of a picture by their paths: one layer for each, and where an object is seen.
 
 use super::{Names, Path};
-use crate::film::Rgb;
-use crate::render::PixelTracer;
+use crate::film::{Crop, Rgb};
+use crate::render::{Options, PixelTracer, Progress};
 use crate::scene::Scene;
 use crate::threads;
 use crate::trace::{PixelTrace, mean};
@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// A picture in layers that add up to it.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Layers {
     /// The strongest paths, the strongest first, each with its own picture, row by row.
     pub layers: Vec<(Path, Vec<Rgb>)>,
@@ -31,25 +31,34 @@ pub struct Sightings {
     pub mask: Vec<f64>,
 }
 
-/// What each pixel's trees are made into, row by row, on so many threads; `done` is told how many rows there are already.
-fn rows<T: Send>(
+/// What each pixel's trees are made into, row by row; `None` if that was cancelled. Of the options only the tiles and the lanes
+/// do not matter.
+pub(super) fn rows<T: Send>(
     world: &World,
-    threads: usize,
-    done: &(dyn Fn(u64) + Sync),
+    options: &Options<'_>,
     of: impl Fn(&PixelTrace) -> T + Sync,
-) -> Vec<T> {
+) -> Option<Vec<T>> {
     let [width, height] = world.camera.size;
-    let count = AtomicU64::new(0);
+    let crop = options.crop.unwrap_or(Crop { x: 0, y: 0, width, height });
+    let total_pixels = u64::from(crop.width) * u64::from(crop.height);
+    let [pixels, rays] = [AtomicU64::new(0), AtomicU64::new(0)];
+    let cancelled = || options.cancel.is_some_and(|cancel| cancel.load(Ordering::Relaxed));
     let row = |y: u32| {
         let mut tracer = PixelTracer::new(world);
-        let pixels: Vec<T> = (0..width).filter_map(|x| tracer.trace(x, y)).map(|trace| of(&trace)).collect();
-        done(count.fetch_add(1, Ordering::Relaxed) + 1);
-        pixels
+        let columns = (crop.x..crop.x.saturating_add(crop.width)).take_while(|_| !cancelled());
+        let row: Vec<T> = columns.filter_map(|x| tracer.trace(x, y)).map(|trace| of(&trace)).collect();
+        if let Some(progress) = options.progress {
+            let pixels = pixels.fetch_add(row.len() as u64, Ordering::Relaxed) + row.len() as u64;
+            let rays = rays.fetch_add(tracer.rays(), Ordering::Relaxed) + tracer.rays();
+            progress(Progress { pixels, total_pixels, rays });
+        }
+        row
     };
-    let rows: Vec<Vec<T>> = threads::share(threads, |parallel| {
-        if parallel { (0..height).into_par_iter().map(row).collect() } else { (0..height).map(row).collect() }
+    let all = crop.y..crop.y.saturating_add(crop.height);
+    let rows: Vec<Vec<T>> = threads::share(options.threads, |parallel| {
+        if parallel { all.into_par_iter().map(row).collect() } else { all.map(row).collect() }
     });
-    rows.into_iter().flatten().collect()
+    (!cancelled()).then(|| rows.into_iter().flatten().collect())
 }
 
 /// The paths of a pixel, each with what it adds, by the engine's order of addition.
@@ -70,10 +79,10 @@ pub fn by_path(names: &Names<'_>, trace: &PixelTrace) -> Vec<(Path, Rgb)> {
     sums.into_iter().map(|(path, sum)| (path, if spp == 1 { sum } else { mean(sum, spp) })).collect()
 }
 
-/// Splits a picture by paths: the `most` strongest of them, and the rest.
-pub fn layers(world: &World, scene: &Scene, most: usize, threads: usize, done: &(dyn Fn(u64) + Sync)) -> Layers {
+/// Splits a picture by paths: the `most` strongest of them, and the rest. `None` if cancelled.
+pub fn layers(world: &World, scene: &Scene, most: usize, options: &Options<'_>) -> Option<Layers> {
     let names = Names { world, scene };
-    let pixels = rows(world, threads, done, |trace| (trace.radiance, by_path(&names, trace)));
+    let pixels = rows(world, options, |trace| (trace.radiance, by_path(&names, trace)))?;
     let mut strength: IndexMap<&Path, f64> = IndexMap::new();
     for (path, color) in pixels.iter().flat_map(|(_, paths)| paths) {
         *strength.entry(path).or_insert(0.0) += color.mean().abs();
@@ -89,36 +98,37 @@ pub fn layers(world: &World, scene: &Scene, most: usize, threads: usize, done: &
             layer[pixel] = layer[pixel] + *color;
         }
     }
-    Layers {
+    Some(Layers {
         layers: layers.into_iter().collect(),
         rest,
         picture: pixels.into_iter().map(|(radiance, _)| radiance).collect(),
-    }
+    })
 }
 
-/// What one path alone adds to each pixel, row by row.
-pub fn only(world: &World, scene: &Scene, path: &Path, threads: usize, done: &(dyn Fn(u64) + Sync)) -> Vec<Rgb> {
+/// What one path alone adds to each pixel, row by row. `None` if cancelled.
+pub fn only(world: &World, scene: &Scene, path: &Path, options: &Options<'_>) -> Option<Vec<Rgb>> {
     let names = Names { world, scene };
-    rows(world, threads, done, |trace| {
+    rows(world, options, |trace| {
         let all = by_path(&names, trace);
         all.into_iter().find(|(other, _)| other == path).map_or(Rgb::gray(0.0), |(_, color)| color)
     })
 }
 
-/// Where an object is seen, directly or by others. A pixel counts once for each path that it has.
-pub fn find(world: &World, scene: &Scene, object: &str, threads: usize, done: &(dyn Fn(u64) + Sync)) -> Sightings {
+/// Where an object is seen, directly or by others. A pixel counts once for each path that it has. `None` if cancelled.
+pub fn find(world: &World, scene: &Scene, object: &str, options: &Options<'_>) -> Option<Sightings> {
     let names = Names { world, scene };
-    let pixels = rows(world, threads, done, |trace| {
+    let pixels = rows(world, options, |trace| {
         let all = by_path(&names, trace);
         let total: f64 = all.iter().map(|(_, color)| color.mean().abs()).sum();
         let seen: Vec<(Path, Rgb)> = all.into_iter().filter(|(path, _)| path.end == object).collect();
         let share: f64 = seen.iter().map(|(_, color)| color.mean().abs()).sum();
         (seen, if total > 0.0 { share / total } else { 0.0 })
-    });
+    })?;
     let mut paths: IndexMap<Path, u64> = IndexMap::new();
     for (path, _) in pixels.iter().flat_map(|(seen, _)| seen) {
         *paths.entry(path.clone()).or_insert(0) += 1;
     }
     paths.sort_by(|_, a, _, b| b.cmp(a));
-    Sightings { paths: paths.into_iter().collect(), mask: pixels.into_iter().map(|(_, share)| share).collect() }
+    let mask = pixels.into_iter().map(|(_, share)| share).collect();
+    Some(Sightings { paths: paths.into_iter().collect(), mask })
 }

@@ -1,4 +1,4 @@
-//! `--svg`: the planes of incidence along the strongest way of a pixel, with normals, angles and critical angles.
+//! The planes of incidence along the strongest way of a pixel, with normals, angles and critical angles, as SVG.
 
 use snell::explain::text::{bytes, mean};
 use snell::explain::{ExplainedHit, ExplainedNode, Explanation, NodeKind};
@@ -16,7 +16,7 @@ const RAY: f64 = 105.0;
 const MIDDLE: [f64; 2] = [WIDTH / 2.0, 172.0];
 
 /// One panel for each surface on the way of the strongest contribution.
-pub fn picture(explanation: &Explanation) -> String {
+pub fn figure(explanation: &Explanation) -> String {
     let nodes = explanation.samples.iter().map(|sample| sample.nodes.as_slice());
     let strongest = nodes
         .flat_map(|nodes| nodes.iter().map(move |node| (nodes, node)))
@@ -64,7 +64,7 @@ fn panel(nodes: &[ExplainedNode], node: &ExplainedNode) -> Option<String> {
     };
     let mut svg = String::new();
     let behind = if hit.eta_behind == hit.eta_before { "#e9e6e0" } else { "#dcebf2" };
-    let _ = writeln!(svg, "<rect x=\"12\" y=\"{cy}\" width=\"{}\" height=\"128\" fill=\"{behind}\"/>", WIDTH - 24.0);
+    let _ = writeln!(svg, "<rect x=\"12\" y=\"{cy}\" width=\"{}\" height=\"118\" fill=\"{behind}\"/>", WIDTH - 24.0);
     let _ = writeln!(
         svg,
         "<line x1=\"12\" y1=\"{cy}\" x2=\"{}\" y2=\"{cy}\" stroke=\"#456\" stroke-width=\"1.5\"/>",

@@ -1,0 +1,109 @@
+"""The scene in 3D, in a notebook: `viewer/` as a widget, with a still picture where no front end answers."""
+
+from __future__ import annotations
+
+import json
+import sys
+from typing import Any
+
+from .errors import PictureError, SnellError
+from .notebook import INSTALL, Still, has_widgets
+from .picture import Picture
+from .tree import RayTree
+
+
+class View:
+    """A scene in 3D: objects, lights, and the camera with the picture in front of it.
+
+    It is looked at from anywhere, through the scene's camera, or from a light. A click on a pixel of the picture draws
+    the tree of its rays. A saved notebook keeps a still picture of it.
+
+    Parameters
+    ----------
+    picture : Picture
+        A whole one; `Scene.view`, `Picture.view` and `RayTree.view` supply it.
+    tree : RayTree, optional
+        Whose rays are drawn.
+    height : str
+        As CSS has it.
+
+    Attributes
+    ----------
+    picture : Picture
+    tree : RayTree or None
+        Of the pixel that was clicked on last.
+
+    Raises
+    ------
+    PictureError
+        If the picture is a part of one.
+
+    Examples
+    --------
+    >>> import snell
+    >>> snell.scenes["lecture/default"].view(width=64)
+    <View of lecture/default, 64 x 64>
+    """
+
+    def __init__(self, picture: Picture, tree: RayTree | None = None, *, height: str = "34rem") -> None:
+        if picture.region != (0, 0, *picture.full_size):
+            raise PictureError([("view", "only a whole picture fits in front of the camera", "view it before crop")])
+        self.picture = picture
+        self._height = height
+        self._tree = tree
+        self._still: Still | None = None
+        self._widget: Any = None
+
+    @property
+    def tree(self) -> RayTree | None:
+        """Whose rays are drawn."""
+        return self._tree
+
+    @tree.setter
+    def tree(self, tree: RayTree | None) -> None:
+        self._tree = tree
+        if self._widget is not None:
+            self._widget.tree = _plain(tree)
+
+    def explain(self, x: int, y: int) -> RayTree:
+        """Draw the rays of a pixel, as a click on it does."""
+        self.tree = tree = self.picture.explain(x, y)
+        return tree
+
+    def _ipython_display_(self) -> None:
+        # First the still: where the widget answers it hides what stands before it.
+        self._still = Still()
+        self._still.show(self.picture._repr_png_())
+        if not has_widgets():
+            print(f"The view in 3D needs: {INSTALL}", file=sys.stderr)
+            return
+        from ._widget import ViewWidget  # noqa: PLC0415 # anywidget is an extra
+
+        if self._widget is None:
+            self._widget = ViewWidget(
+                scene=json.loads(self.picture._native.view()),
+                picture=self.picture._repr_png_(),
+                tree=_plain(self.tree),
+                title=self.picture.name,
+                height=self._height,
+            )
+            self._widget.on_msg(self._hear)
+        sys.modules["IPython"].display.display(self._widget)
+
+    def _hear(self, widget: Any, message: Any, buffers: list[Any]) -> None:
+        """Answer the front end: a pixel was clicked on, or it has drawn something."""
+        match message:
+            case {"kind": "explain", "pixel": [int(x), int(y)]}:
+                try:
+                    self.explain(x, y)
+                except SnellError as error:
+                    widget.send({"kind": "error", "message": str(error)})
+            case {"kind": "still"} if buffers and self._still is not None:
+                self._still.show(bytes(buffers[0]))
+
+    def __repr__(self) -> str:
+        return f"<View of {self.picture.name}, {self.picture.width} x {self.picture.height}>"
+
+
+def _plain(tree: RayTree | None) -> dict[str, Any] | None:
+    return None if tree is None else json.loads(tree.to_json())

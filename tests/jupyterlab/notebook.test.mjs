@@ -1,0 +1,169 @@
+// A notebook in JupyterLab, in Chromium: a slider changes the picture, a click on a pixel draws its rays, and what is saved
+// shows its pictures when it is opened again without the network and without the kernel that made them.
+//
+//   PYTHON=target/python/bin/python node --test tests/jupyterlab/
+
+import assert from 'node:assert/strict';
+import { spawn } from 'node:child_process';
+import { createHash } from 'node:crypto';
+import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { createRequire } from 'node:module';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { fileURLToPath } from 'node:url';
+
+const root = fileURLToPath(new URL('../..', import.meta.url));
+const { chromium } = createRequire(join(root, 'viewer/package.json'))('playwright-core');
+const python = process.env.PYTHON ?? join(root, 'target/python/bin/python');
+
+const CELLS = [
+  "import snell\nscene = snell.scenes['lecture/default']\nsnell.interact(scene, eta=(1.0, 4.0), width=200)",
+  'scene.view(width=256)',
+];
+// A machine with other work may take this long to start a kernel.
+const PATIENCE = { timeout: 120_000 };
+
+let folder, browser, server, page;
+const trouble = [];
+
+before(async () => {
+  folder = mkdtempSync(join(tmpdir(), 'snell-jupyterlab-'));
+  const cells = CELLS.map((source, i) => ({ cell_type: 'code', id: `cell${i}`, metadata: {}, source, outputs: [], execution_count: null }));
+  const kernelspec = { name: 'python3', display_name: 'Python 3', language: 'python' };
+  writeFileSync(join(folder, 'lecture.ipynb'), JSON.stringify({ cells, metadata: { kernelspec }, nbformat: 4, nbformat_minor: 5 }));
+  // Drawn without a graphics card, so that pictures are much the same on all machines.
+  const args = ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'];
+  browser = await chromium.launch({ executablePath: '/usr/bin/chromium', args });
+}, PATIENCE);
+
+after(async () => {
+  await browser?.close();
+  await stop(server);
+  rmSync(folder, { recursive: true, force: true });
+});
+
+test('a slider renders the scene anew while it moves', PATIENCE, async () => {
+  await start();
+  await page.evaluate(() => jupyterapp.commands.execute('notebook:run-all-cells'));
+  const picture = output(0).locator('img');
+  await picture.waitFor(PATIENCE);
+  const handle = output(0).locator('.noUi-handle');
+  await handle.waitFor(PATIENCE);
+  const first = await digest(picture);
+  await handle.focus();
+  for (let step = 0; step < 5; step++) await page.keyboard.press('ArrowRight');
+  await page.waitForFunction(() => document.querySelector('.jp-OutputArea .widget-readout')?.textContent === '2.10', null, { timeout: 20_000 });
+  await changes(picture, first);
+  await output(0).getByText('million rays').waitFor();
+});
+
+test('the view shows the scene, from a light as well, and the rays of a pixel that is clicked on', PATIENCE, async () => {
+  const canvas = output(1).locator('canvas');
+  await canvas.waitFor(PATIENCE);
+  assert.equal(await output(1).locator('img').isVisible(), false, 'the still picture hides while the view is alive');
+  const seen = await look(canvas);
+  await output(1).getByRole('button', { name: 'From light left' }).click();
+  await differs(canvas, seen);
+  await output(1).getByRole('button', { name: 'Look through the camera' }).click();
+  await page.waitForTimeout(1500); // the eye flies there
+  // The picture fills the height of the view but for a margin; the green ball in the glass is left of its middle, below it.
+  const box = await canvas.boundingBox();
+  const side = Math.min(box.width, box.height) / 1.12;
+  const at = (pixel, size) => ((pixel + 0.5) / size - 0.5) * side;
+  await page.mouse.click(box.x + box.width / 2 + at(95, 256), box.y + box.height / 2 + at(150, 256));
+  await output(1).getByText('Green because 53 %').waitFor();
+  await output(1).getByRole('treeitem', { name: /Refracted ray hits green/ }).waitFor();
+});
+
+test('a saved notebook has its pictures without network and kernel', PATIENCE, async () => {
+  // The view sends its still picture when it has been quiet for a moment.
+  await page.waitForTimeout(2500);
+  await page.evaluate(() => jupyterapp.commands.execute('docmanager:save'));
+  const saved = JSON.parse(readFileSync(join(folder, 'lecture.ipynb'), 'utf8'));
+  const stills = saved.cells.map((cell) => cell.outputs.flatMap((o) => o.data?.['image/png'] ?? []).map((png) => png.trim()));
+  assert.deepEqual(stills.map((pngs) => pngs.length), [1, 1], 'one picture in each cell');
+  await stop(server);
+  await page.context().close();
+  await start();
+  for (const [cell, [png]] of stills.entries()) {
+    const picture = output(cell).locator('img');
+    await picture.waitFor(PATIENCE);
+    assert.ok(await picture.isVisible());
+    assert.ok(await picture.evaluate((img) => img.complete && img.naturalWidth > 100));
+    assert.equal(await digest(picture), createHash('sha256').update(png).digest('hex'), 'the picture that was saved');
+  }
+  if (process.env.SHOT) await page.screenshot({ path: process.env.SHOT });
+  assert.deepEqual(trouble, []);
+});
+
+/** A server of its own, which nobody has set up, and a page of it with the notebook open. */
+async function start() {
+  const home = mkdtempSync(join(folder, 'home-'));
+  const place = (name) => mkdirSync(join(home, name), { recursive: true }) ?? join(home, name);
+  const env = { ...process.env, HOME: home, JUPYTER_PREFER_ENV_PATH: '1' };
+  for (const name of ['JUPYTER_DATA_DIR', 'JUPYTER_CONFIG_DIR', 'JUPYTER_RUNTIME_DIR', 'IPYTHONDIR']) env[name] = place(name);
+  const options = ['--no-browser', '--LabApp.expose_app_in_browser=True', '--allow-root', '--ip=127.0.0.1', '--port=0', '--IdentityProvider.token=snell', `--notebook-dir=${folder}`];
+  server = spawn(python, ['-m', 'jupyterlab', ...options], { env });
+  const port = await new Promise((resolve, reject) => {
+    let said = '';
+    const hear = (text) => {
+      said += text;
+      const found = /127\.0\.0\.1:(\d+)\/lab/.exec(said);
+      if (found) resolve(found[1]);
+    };
+    server.stdout.on('data', hear);
+    server.stderr.on('data', hear);
+    server.on('error', reject);
+    server.on('exit', () => reject(new Error(`JupyterLab did not start:\n${said}`)));
+  });
+  const context = await browser.newContext({ viewport: { width: 1400, height: 1200 }, reducedMotion: 'reduce' });
+  // As without a network: nothing but the server can be reached, and nobody should try.
+  await context.route(/^https?:/, (route) => {
+    if (route.request().url().startsWith(`http://127.0.0.1:${port}/`)) return route.continue();
+    trouble.push(`request of ${route.request().url()}`);
+    return route.abort();
+  });
+  page = await context.newPage();
+  await page.goto(`http://127.0.0.1:${port}/lab/tree/lecture.ipynb?token=snell`);
+  await page.waitForFunction(() => window.jupyterapp?.shell.currentWidget?.sessionContext?.session?.kernel?.status === 'idle', null, PATIENCE);
+}
+
+async function stop(child) {
+  if (child === undefined || child.exitCode !== null) return;
+  const gone = new Promise((resolve) => child.once('exit', resolve));
+  child.kill('SIGTERM');
+  const kill = setTimeout(() => child.kill('SIGKILL'), 10_000);
+  await gone;
+  clearTimeout(kill);
+}
+
+function output(cell) {
+  return page.locator('.jp-CodeCell').nth(cell).locator('.jp-Cell-outputArea');
+}
+
+/** Of the bytes that a picture is made of. */
+async function digest(picture) {
+  const url = await picture.getAttribute('src');
+  return createHash('sha256').update(url.slice(url.indexOf(',') + 1).trim()).digest('hex');
+}
+
+async function look(element) {
+  return createHash('sha256').update(await element.screenshot()).digest('hex');
+}
+
+async function changes(picture, before) {
+  await until(async () => (await digest(picture)) !== before, 'the picture changes');
+}
+
+async function differs(element, before) {
+  await until(async () => (await look(element)) !== before, 'the drawing changes');
+}
+
+async function until(holds, what) {
+  for (let attempt = 0; attempt < 50; attempt++) {
+    if (await holds()) return;
+    await page.waitForTimeout(200);
+  }
+  assert.fail(`expected: ${what}`);
+}
