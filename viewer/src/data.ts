@@ -9,7 +9,12 @@ export type Color = [number, number, number];
 /** Everything that is shown. */
 export interface ViewerData {
   scene: ViewScene;
-  tree: RayTreeDocument;
+  /** `null` or nothing: the scene alone. */
+  tree?: RayTreeDocument | null;
+  /** What stands above the scene while there is no tree. */
+  title?: string;
+  /** A PNG of what the camera sees, shown on its image plane. */
+  picture?: BufferSource | null;
 }
 
 /** All rays of one pixel, with what each of them adds to it. */
@@ -128,6 +133,8 @@ export interface ViewScene {
   meshes: ViewMesh[];
   camera: ViewCamera;
   lights: ViewLight[];
+  /** How pictures of the scene are written; without it, as the tree says, or with the curve of sRGB. */
+  transfer?: Transfer;
 }
 
 export interface ViewSphere {

@@ -1,5 +1,6 @@
 /** The public face of the viewer; see the README. */
 
 export type * from './data';
-export { mount, type SelectListener, type Viewer, type ViewerOptions } from './viewer';
+export { mount, type Viewer, type ViewerEvents, type ViewerOptions } from './viewer';
 export { validate, ViewerDataError } from './validate';
+export { widget, type WidgetMessage, type WidgetModel, type WidgetTraits } from './widget';

@@ -44,8 +44,11 @@ export const DARK: Theme = {
   rays: { camera: '#c3ccd9', mirror: '#ff9a62', refracted: '#4fd3e0', inside: '#b59cff', shadow: '#e9bd4b' },
 };
 
+/** Dark or light as the page asks for, or always the same. */
+export type Scheme = 'auto' | 'light' | 'dark';
+
 /** Calls back now, and whenever the page turns dark or light. Returns what ends that. */
-export function followTheme(scheme: 'auto' | 'light' | 'dark', apply: (theme: Theme) => void): () => void {
+export function followTheme(scheme: Scheme, apply: (theme: Theme) => void): () => void {
   const dark = window.matchMedia('(prefers-color-scheme: dark)');
   const update = () => apply(scheme === 'dark' || (scheme === 'auto' && dark.matches) ? DARK : LIGHT);
   update();

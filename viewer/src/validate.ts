@@ -1,6 +1,6 @@
 /** Looks at the data before anything is drawn, and names the first thing that is wrong. */
 
-import type { ViewerData } from './data';
+import type { RayTreeDocument, ViewerData } from './data';
 
 /** What is wrong with the data, and where. */
 export class ViewerDataError extends Error {
@@ -11,11 +11,26 @@ export class ViewerDataError extends Error {
 export function validate(value: unknown): asserts value is ViewerData {
   const data = fields(value, 'data');
   checkScene(data.scene);
-  checkTree(data.tree);
+  validateTree(data.tree ?? null);
+  if (data.title !== undefined) text(data.title, 'title');
+  validatePicture(data.picture ?? null);
+}
+
+/** Throws a `ViewerDataError` unless `value` is `null` or a tree that can be shown. */
+export function validateTree(value: unknown): asserts value is RayTreeDocument | null {
+  optional(checkTree)(value, 'tree');
+}
+
+/** Throws a `ViewerDataError` unless `value` is `null` or bytes; whether they are a picture, the browser says later. */
+export function validatePicture(value: unknown): asserts value is BufferSource | null {
+  const bytes = value === null || value instanceof ArrayBuffer || ArrayBuffer.isView(value);
+  if (!bytes) fail('picture', 'the bytes of a PNG', value);
 }
 
 type Fields = Record<string, unknown>;
 type Check = (value: unknown, path: string) => void;
+
+const TRANSFERS = ['srgb', 'linear'];
 
 function checkScene(value: unknown): void {
   const scene = fields(value, 'scene');
@@ -45,6 +60,7 @@ function checkScene(value: unknown): void {
     if (light.position === null) triple(light.direction, `${path}.direction`);
     else triple(light.position, `${path}.position`);
   });
+  if (scene.transfer !== undefined) choice(scene.transfer, TRANSFERS, 'scene.transfer');
 }
 
 function surface(value: unknown, path: string): Fields {
@@ -64,7 +80,7 @@ function checkTree(value: unknown): void {
     if ((tree[key] as unknown[]).length !== 2) fail(`tree.${key}`, 'two numbers', tree[key]);
   }
   triple(tree.color, 'tree.color');
-  choice(tree.transfer, ['srgb', 'linear'], 'tree.transfer');
+  choice(tree.transfer, TRANSFERS, 'tree.transfer');
   number(tree.spp, 'tree.spp');
   list(tree.samples, 'tree.samples', (item, path) => {
     const sample = fields(item, path);

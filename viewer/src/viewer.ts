@@ -1,27 +1,29 @@
-/** The drawing, the text tree and the details of one pixel, side by side. */
+/** The drawing of a scene and, if there is one, the ray tree of a pixel beside it. */
 
-import { cssColor } from './color';
-import type { ViewerData } from './data';
-import { DetailView } from './detail-view';
-import { button, checkbox, element, stroke, swatch } from './dom';
-import { TreeModel } from './model';
+import type { RayTreeDocument, ViewerData } from './data';
+import { button, checkbox, element } from './dom';
+import { Panel } from './panel';
+import { nextPixel, type Pixel } from './pixels';
 import frameStyle from './style/frame.css?inline';
 import panelStyle from './style/panel.css?inline';
-import { followTheme, LIGHT, setProperties, type Theme } from './theme';
+import { alternative, legend, pixelHeader, sceneHeader } from './texts';
+import { followTheme, LIGHT, type Scheme, setProperties, type Theme } from './theme';
 import { Drawing } from './three/drawing';
-import { TreeView } from './tree-view';
-import { validate } from './validate';
-import { KIND_NAMES } from './words';
+import { validate, validatePicture, validateTree } from './validate';
 
 export interface ViewerOptions {
   /** Dark or light as the page asks for (`auto`), or always the same. */
-  scheme?: 'auto' | 'light' | 'dark';
+  scheme?: Scheme;
 }
 
-/** Names in the text alternative: nobody listens to a hundred. */
-const MAX_SPOKEN = 12;
-
-export type SelectListener = (id: number | null) => void;
+export interface ViewerEvents {
+  /** A ray of the sample that is shown, or none. */
+  select: (id: number | null) => void;
+  /** Someone asks for the rays of a pixel: its column and row, counted from the left and from the top. */
+  pixel: (x: number, y: number) => void;
+  /** The drawing has changed; not while the pointer is on a ray. */
+  draw: () => void;
+}
 
 /** Shows the data in `parent`. Throws a `ViewerDataError` if it cannot be shown. */
 export function mount(parent: HTMLElement, data: ViewerData, options: ViewerOptions = {}): Viewer {
@@ -31,15 +33,21 @@ export function mount(parent: HTMLElement, data: ViewerData, options: ViewerOpti
 
 export class Viewer {
   private readonly host = element('div');
-  private readonly detail: DetailView;
-  private readonly treePlace = element('div', { style: 'display: contents' });
+  private readonly frame = element('div', { class: 'viewer' });
   private readonly note = element('p', { role: 'status' });
+  private readonly alternative = element('p', { id: 'alternative', class: 'hidden-text' });
+  private readonly pictureBox = checkbox('Picture', true, (shown) => this.showPicture(shown));
   private readonly drawing: Drawing | null;
-  private readonly listeners = new Set<SelectListener>();
-  private readonly stopTheme: () => void;
+  private readonly listeners: { [E in keyof ViewerEvents]: Set<ViewerEvents[E]> } = { select: new Set(), pixel: new Set(), draw: new Set() };
+  private header = element('header');
+  private panel: Panel | null = null;
+  private tree: RayTreeDocument | null = null;
+  /** What the note says of the drawing, of the picture, and for others. */
+  private notes = { drawing: '', picture: '', hint: '', other: '' };
+  /** The pixel that is shown, or has been asked for since. */
+  private pixel: Pixel | null = null;
+  private stopTheme: () => void = () => {};
   private theme: Theme = LIGHT;
-  private model!: TreeModel;
-  private tree!: TreeView;
   private state = { selected: null as number | null, hovered: null as number | null, allShadows: false };
 
   /** See `mount`. */
@@ -53,18 +61,13 @@ export class Viewer {
     const sheet = new CSSStyleSheet();
     sheet.replaceSync(panelStyle + frameStyle);
     root.adoptedStyleSheets = [sheet];
-    this.detail = new DetailView(data.tree.transfer);
     this.drawing = this.makeDrawing();
-    const viewer = element('div', { class: 'viewer' }, this.header(), this.view(), this.panel());
-    root.append(viewer);
+    this.frame.append(this.header, this.view());
+    root.append(this.frame);
     parent.append(this.host);
-    this.showSample(0);
-    this.stopTheme = followTheme(options.scheme ?? 'auto', (theme) => {
-      this.theme = theme;
-      setProperties(viewer, theme);
-      this.drawing?.setTheme(theme);
-      this.update();
-    });
+    this.setScheme(options.scheme ?? 'auto');
+    this.showTree(data.tree ?? null);
+    void this.showPictureOf(data.picture ?? null);
   }
 
   /** The selected ray of the sample that is shown. */
@@ -73,45 +76,148 @@ export class Viewer {
   }
 
   select(id: number | null): void {
-    if (id !== null && this.model.nodes[id] === undefined) throw new RangeError(`there is no ray ${id} in this sample`);
+    if (id !== null && this.panel?.model.nodes[id] === undefined) throw new RangeError(`there is no ray ${id} in this sample`);
     if (id === this.state.selected) return;
     this.state.selected = id;
-    this.tree.select(id);
-    this.detail.show(this.model, id);
+    this.panel?.select(id);
     this.update();
-    for (const listener of this.listeners) listener(id);
+    for (const listener of this.listeners.select) listener(id);
   }
 
-  /** Calls back with each newly selected ray. Returns what ends that. */
-  on(_event: 'select', listener: SelectListener): () => void {
-    this.listeners.add(listener);
-    return () => this.listeners.delete(listener);
+  /** Shows the rays of another pixel, or none; the eye stays where it is. Throws a `ViewerDataError`. */
+  setTree(tree: RayTreeDocument | null): void {
+    validateTree(tree);
+    this.select(null);
+    this.showTree(tree);
+  }
+
+  /** Shows another PNG on the image plane, or none. Throws a `ViewerDataError`; a note tells of bytes that are no picture. */
+  setPicture(png: BufferSource | null): Promise<void> {
+    validatePicture(png);
+    return this.showPictureOf(png);
+  }
+
+  /** A quiet line below the drawing. */
+  setNote(text: string): void {
+    this.showNote({ other: text });
+  }
+
+  setScheme(scheme: Scheme): void {
+    this.stopTheme();
+    this.stopTheme = followTheme(scheme, (theme) => {
+      this.theme = theme;
+      setProperties(this.frame, theme);
+      this.drawing?.setTheme(theme);
+      this.update();
+    });
+  }
+
+  /** Calls back with each event of a kind. Returns what ends that. */
+  on<E extends keyof ViewerEvents>(event: E, listener: ViewerEvents[E]): () => void {
+    this.listeners[event].add(listener);
+    this.showPixels();
+    return () => {
+      this.listeners[event].delete(listener);
+      this.showPixels();
+    };
+  }
+
+  /** A PNG of the drawing, in the resolution of the screen but not wider than `maxWidth`; `null` if there is no drawing. */
+  still(maxWidth: number): Promise<Blob | null> {
+    return this.drawing?.still(this.theme, maxWidth) ?? Promise.resolve(null);
   }
 
   /** Takes the viewer out of the page. */
   dispose(): void {
     this.stopTheme();
-    this.listeners.clear();
+    for (const listeners of Object.values(this.listeners)) listeners.clear();
     this.drawing?.dispose();
     this.host.remove();
   }
 
-  private showSample(index: number): void {
+  private showTree(tree: RayTreeDocument | null): void {
+    this.tree = tree;
+    this.pixel = tree && tree.pixel;
+    const header = tree ? pixelHeader(tree) : sceneHeader(this.data.title ?? 'Scene', this.data.scene);
+    this.header.replaceWith(header);
+    this.header = header;
+    this.panel?.root.remove();
+    const events = {
+      select: (id: number | null) => this.select(id),
+      hover: (id: number | null) => this.hover(id),
+      sample: () => {
+        this.select(null);
+        this.showSample();
+      },
+    };
+    this.panel = tree && new Panel(tree, events);
+    if (this.panel) this.frame.append(this.panel.root);
+    this.frame.classList.toggle('alone', tree === null);
+    this.drawing?.setTree(tree);
+    this.showPixels();
+    this.showSample();
+  }
+
+  private showSample(): void {
     this.state.hovered = null;
-    this.model = new TreeModel(this.data.tree.samples[index]!.nodes);
-    const hover = (id: number | null) => this.hover(id);
-    this.tree = new TreeView(this.model, this.data.tree.transfer, { select: (id) => this.select(id), hover });
-    this.treePlace.replaceChildren(this.tree.root);
-    this.detail.show(this.model, null);
-    const left = this.drawing?.setModel(this.model) ?? 0;
-    if (this.drawing) this.note.textContent = left > 0 ? `The ${left} weakest rays are not drawn; the tree has them all.` : '';
+    const left = (this.panel && this.drawing?.setModel(this.panel.model)) ?? 0;
+    if (this.drawing) this.showNote({ drawing: left > 0 ? `The ${left} weakest rays are not drawn; the tree has them all.` : '' });
     this.update();
+  }
+
+  private async showPictureOf(png: BufferSource | null): Promise<void> {
+    try {
+      await this.drawing?.setPicture(png);
+      this.showNote({ picture: '' });
+    } catch (error) {
+      this.showNote({ picture: `The picture is not shown: its bytes are no PNG (${(error as Error).message}).` });
+    }
+    this.showPixels();
+  }
+
+  private showPicture(shown: boolean): void {
+    this.drawing?.plane.showPicture(shown);
+    this.update();
+  }
+
+  /** What depends on whether pixels can be pointed at, and on the one that is. */
+  private showPixels(): void {
+    const { drawing } = this;
+    if (drawing === null) return;
+    const size = this.sizeOfPicture();
+    drawing.picksPixels = this.listeners.pixel.size > 0;
+    drawing.mark(this.pixel, size);
+    this.pictureBox.hidden = drawing.plane.size === null;
+    this.alternative.textContent = alternative(this.data.scene, this.tree !== null, drawing.picksPixels && size !== null);
+    const asks = drawing.picksPixels && drawing.plane.size !== null && this.pixel === null;
+    this.showNote({ hint: asks ? 'Look through the camera and click a pixel to see its rays.' : '' });
+    const rays = this.tree ? ` and the rays of pixel (${this.tree.pixel.join(', ')})` : '';
+    drawing.stage.canvas.setAttribute('aria-label', `The scene${rays} in 3D`);
+  }
+
+  private sizeOfPicture(): Pixel | null {
+    return this.drawing?.plane.size ?? this.tree?.size ?? null;
+  }
+
+  private ask(pixel: Pixel): void {
+    this.pixel = pixel;
+    this.showPixels();
+    for (const listener of this.listeners.pixel) listener(...pixel);
+  }
+
+  private onKey(event: KeyboardEvent): void {
+    const size = this.sizeOfPicture();
+    if (!event.shiftKey || event.ctrlKey || event.metaKey || event.altKey || size === null || this.listeners.pixel.size === 0) return;
+    const pixel = nextPixel(event.key, this.pixel, size);
+    if (pixel === null) return;
+    event.preventDefault();
+    this.ask(pixel);
   }
 
   private hover(id: number | null): void {
     if (id === this.state.hovered) return;
     this.state.hovered = id;
-    this.tree.hover(id);
+    this.panel?.hover(id);
     this.update();
   }
 
@@ -119,34 +225,43 @@ export class Viewer {
     this.drawing?.show(this.state, this.theme);
   }
 
-  private makeDrawing(): Drawing | null {
-    try {
-      return new Drawing(this.data, { select: (id) => this.select(id), hover: (id) => this.hover(id) });
-    } catch (error) {
-      // Without WebGL the text still says everything.
-      this.note.textContent = `There is no drawing, since this browser offers no WebGL (${(error as Error).message}).`;
-      return null;
-    }
+  private showNote(notes: Partial<Viewer['notes']>): void {
+    Object.assign(this.notes, notes);
+    this.note.textContent = Object.values(this.notes).filter((text) => text !== '').join(' ');
   }
 
-  private header(): HTMLElement {
-    const { sentence, pixel, size, scene, integrator, spp, color, transfer } = this.data.tree;
-    const samples = spp === 1 ? '1 sample' : `${spp} samples`;
-    const facts = `Pixel (${pixel.join(', ')}) of ${size.join(' × ')} · ${scene} · ${integrator} · ${samples} per pixel`;
-    const texts = element('div', {}, element('p', { class: 'sentence' }, sentence), element('p', { class: 'quiet' }, facts));
-    return element('header', {}, swatch(cssColor(color, transfer)), texts);
+  private makeDrawing(): Drawing | null {
+    try {
+      return new Drawing(this.data.scene, this.data.tree ?? null, {
+        select: (id) => this.select(id),
+        hover: (id) => this.hover(id),
+        pixel: (pixel) => this.ask(pixel),
+        frame: () => {
+          if (this.state.hovered === null) for (const listener of this.listeners.draw) listener();
+        },
+      });
+    } catch (error) {
+      // Without WebGL the text still says everything.
+      this.showNote({ drawing: `There is no drawing, since this browser offers no WebGL (${(error as Error).message}).` });
+      return null;
+    }
   }
 
   private view(): HTMLElement {
     const view = element('section', { class: 'view', 'aria-label': 'Drawing' });
     const { drawing } = this;
+    const footer = element('div', { class: 'footer' }, this.note, ...(drawing === null ? [] : [legend()]));
     if (drawing !== null) {
       const { canvas } = drawing.stage;
-      const [x, y] = this.data.tree.pixel;
       canvas.setAttribute('role', 'application');
       canvas.setAttribute('aria-roledescription', '3D drawing');
-      canvas.setAttribute('aria-label', `The scene and the rays of pixel (${x}, ${y}) in 3D`);
       canvas.setAttribute('aria-describedby', 'alternative');
+      canvas.addEventListener('keydown', (event) => this.onKey(event));
+      const shadows = checkbox('All shadow rays', false, (allShadows) => {
+        this.state.allShadows = allShadows;
+        this.update();
+      });
+      shadows.classList.add('of-rays');
       const toolbar = element(
         'div',
         { class: 'toolbar', role: 'group', 'aria-label': 'Views' },
@@ -154,50 +269,15 @@ export class Viewer {
         button('Look through the camera', () => drawing.lookThroughCamera()),
         ...this.data.scene.lights.map(({ name }, index) => button(`From light ${name}`, () => drawing.lookFromLight(index))),
         checkbox('Names', true, (shown) => (drawing.names.root.hidden = !shown)),
-        checkbox('All shadow rays', false, (allShadows) => {
-          this.state.allShadows = allShadows;
-          this.update();
-        }),
+        this.pictureBox,
+        shadows,
       );
-      view.append(drawing.root, toolbar, element('p', { id: 'alternative', class: 'hidden-text' }, this.alternative()));
+      // In a narrow viewer they are beside the drawing, not on it.
+      const height = (part: HTMLElement) => (getComputedStyle(part).position === 'absolute' ? part.offsetHeight : 0);
+      drawing.stage.covered = () => [height(toolbar), height(footer)];
+      view.append(drawing.root, toolbar, this.alternative);
     }
-    view.append(element('div', { class: 'footer' }, this.note, ...(drawing === null ? [] : [legend()])));
+    view.append(footer);
     return view;
   }
-
-  private panel(): HTMLElement {
-    const head = element('div', { class: 'panel-head' }, element('h2', {}, 'Ray tree'));
-    const { samples } = this.data.tree;
-    if (samples.length > 1) {
-      const picker = element('select', { 'aria-label': 'Sample' });
-      samples.forEach((_, index) => picker.append(element('option', {}, `Sample ${index + 1} of ${samples.length}`)));
-      picker.addEventListener('change', () => {
-        this.select(null);
-        this.showSample(picker.selectedIndex);
-      });
-      head.append(picker);
-    }
-    return element('section', { class: 'panel', 'aria-label': 'Ray tree and details' }, head, this.treePlace, this.detail.root);
-  }
-
-  /** What the drawing shows, for those who do not see it. */
-  private alternative(): string {
-    const { spheres, meshes, lights } = this.data.scene;
-    return (
-      `Spheres: ${names(spheres)}. Meshes: ${names(meshes)}. Lights: ${names(lights)}. ` +
-      'The tree of rays beside the drawing says where each ray goes and what it adds. ' +
-      'Arrow keys turn the drawing, plus and minus go nearer and farther.'
-    );
-  }
-}
-
-function names(things: { name: string }[]): string {
-  if (things.length === 0) return 'none';
-  const first = things.slice(0, MAX_SPOKEN).map(({ name }) => name).join(', ');
-  return things.length > MAX_SPOKEN ? `${first} and ${things.length - MAX_SPOKEN} more` : first;
-}
-
-function legend(): HTMLElement {
-  const items = Object.entries(KIND_NAMES).map(([kind, name]) => element('li', {}, stroke(kind), name));
-  return element('ul', { class: 'legend', 'aria-label': 'Colours of the rays' }, ...items);
 }

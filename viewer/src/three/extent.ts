@@ -1,4 +1,4 @@
-/** What the drawing is about: the camera, the rays and what is near them. */
+/** What the drawing is about: the camera, the rays and what is near them; or without rays, the objects before the camera. */
 
 import { Box3, Sphere, Vector3 } from 'three';
 import type { RayNode, Vec3, ViewScene } from '../data';
@@ -12,24 +12,43 @@ export interface Extent {
   radius: number;
 }
 
-/** Things larger than this many radii of the rays, or farther away, are not waited for: a floor may be endless. */
+/** Things this many times as large as the others, or as far away, are not waited for: a floor may be endless. */
 const FAR = 3;
+/** Radius in distances from the eye: larger things are floors, walls and rooms. */
+const WIDE = 0.5;
 
 export function extentOf(scene: ViewScene, nodes: RayNode[]): Extent {
   const camera = [scene.camera.eye, ...scene.camera.corners].map(point);
   const ends = nodes.flatMap(({ hit }) => (hit === null ? [] : [point(hit.point)]));
-  const rays = bounds([...camera, ...ends]);
+  const objects = [...scene.spheres.map(({ center, radius }) => [ball(center, radius)]), ...scene.meshes.map(corners)].filter(
+    (spheres) => spheres.length > 0,
+  );
+  // Without rays, the objects decide themselves.
+  const shown = ends.length > 0 ? objects : subjects(objects, new Vector3(...scene.camera.eye));
+  const core = bounds([...camera, ...(ends.length > 0 ? ends : shown.flat())]);
   const near = (spheres: Sphere[]) => {
     const { center, radius } = bounds(spheres);
-    return center.distanceTo(rays.center) + radius <= FAR * rays.radius;
+    return center.distanceTo(core.center) + radius <= FAR * core.radius;
   };
-  const objects = [...scene.spheres.map(({ center, radius }) => [ball(center, radius)]), ...scene.meshes.map(corners)];
-  const things = [...ends, ...objects.filter(near).flat()];
+  const things = [...ends, ...shown.filter(near).flat()];
   const lamps = scene.lights.flatMap(({ position }) => (position === null ? [] : [point(position)])).filter((lamp) => near([lamp]));
   const all = [...camera, ...things, ...lamps];
   const extent = { things: things.length > 0 ? things : camera, all, ...bounds(all) };
   for (const { direction } of scene.lights) if (direction !== null) all.push(new Sphere(arrowStart(direction, extent), 0));
   return extent;
+}
+
+/** The objects that stand before the eye instead of around it, from near to far, until one is much farther than those before. */
+function subjects(objects: Sphere[][], eye: Vector3): Sphere[][] {
+  const seen = objects.map((spheres) => {
+    const { center, radius } = bounds(spheres);
+    const distance = center.distanceTo(eye);
+    return { spheres, reach: distance + radius, wide: radius > WIDE * distance };
+  });
+  const before = seen.some(({ wide }) => !wide) ? seen.filter(({ wide }) => !wide) : seen;
+  before.sort((a, b) => a.reach - b.reach);
+  const end = before.findIndex(({ reach }, index) => index > 0 && reach > FAR * before[index - 1]!.reach);
+  return before.slice(0, end < 0 ? before.length : end).map(({ spheres }) => spheres);
 }
 
 /** Where the arrow of a light at infinity begins. */

@@ -106,7 +106,8 @@ export class LineSet {
   readonly group = new Group();
   private geometry = new BufferGeometry();
 
-  constructor(uniforms: ScreenUniforms) {
+  /** `order` is the place among translucent things: by default over all surfaces. */
+  constructor(uniforms: ScreenUniforms, order = 10) {
     for (const hidden of [true, false]) {
       const material = new ShaderMaterial({
         vertexShader: VERTEX,
@@ -118,8 +119,7 @@ export class LineSet {
       });
       const mesh = new Mesh(this.geometry, material);
       mesh.frustumCulled = false;
-      // Over everything that is translucent.
-      mesh.renderOrder = 10;
+      mesh.renderOrder = order;
       this.group.add(mesh);
     }
   }

@@ -1,4 +1,4 @@
-/** Dots where rays end, and lamps: marks of a size in pixels. */
+/** Dots where rays end, lamps, and the frame of a pixel: marks of a size in pixels. */
 
 import { BufferGeometry, Float32BufferAttribute, Points, ShaderMaterial } from 'three';
 import type { Vec3 } from '../data';
@@ -10,13 +10,14 @@ export interface Mark {
   /** Diameter in pixels. */
   size: number;
   opacity: number;
-  lamp?: boolean;
+  /** A dot unless it is said. */
+  shape?: 'lamp' | 'frame';
 }
 
 const VERTEX = /* glsl */ `
 uniform float ratio;
 attribute vec3 tint;
-attribute vec3 look; // size, opacity, 1: lamp
+attribute vec3 look; // size, opacity, 1: lamp, 2: frame
 varying vec4 vColor;
 varying vec2 vShape;
 
@@ -36,7 +37,13 @@ void main() {
   float far = length(place);
   float radius = 0.5 * vShape.x;
   float alpha = 1.0 - smoothstep(radius - 0.5, radius + 0.5, far);
-  if (vShape.y > 0.5) {
+  vec3 tint = vColor.rgb;
+  if (vShape.y > 1.5) {
+    // A square in the colour between two dark ones: seen on every picture.
+    float inwards = radius - max(abs(place.x), abs(place.y));
+    tint *= smoothstep(0.6, 1.4, inwards) * (1.0 - smoothstep(2.6, 3.4, inwards));
+    alpha = smoothstep(-0.5, 0.5, inwards) * (1.0 - smoothstep(3.5, 4.5, inwards));
+  } else if (vShape.y > 0.5) {
     // A disc, eight short strokes around it, and a glow.
     float turn = 0.7853981634;
     float angle = mod(atan(place.y, place.x) + 0.5 * turn, turn) - 0.5 * turn;
@@ -47,7 +54,7 @@ void main() {
     float glow = 0.4 * pow(max(0.0, 1.0 - far / radius), 1.5);
     alpha = max(max(disc, strokes), glow);
   }
-  gl_FragColor = vec4(vColor.rgb, vColor.a * alpha);
+  gl_FragColor = vec4(tint, vColor.a * alpha);
 }`;
 
 export class MarkSet {
@@ -72,7 +79,7 @@ export class MarkSet {
     const geometry = new BufferGeometry();
     geometry.setAttribute('position', new Float32BufferAttribute(marks.flatMap((mark) => mark.at), 3));
     geometry.setAttribute('tint', new Float32BufferAttribute(marks.flatMap((mark) => screenColor(mark.color)), 3));
-    const look = marks.flatMap(({ size, opacity, lamp }) => [size, opacity, lamp ? 1 : 0]);
+    const look = marks.flatMap(({ size, opacity, shape }) => [size, opacity, shape === undefined ? 0 : shape === 'lamp' ? 1 : 2]);
     geometry.setAttribute('look', new Float32BufferAttribute(look, 3));
     this.points.geometry.dispose();
     this.points.geometry = geometry;

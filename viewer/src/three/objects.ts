@@ -73,7 +73,8 @@ export class Objects {
     private readonly transfer: Transfer,
     uniforms: ScreenUniforms,
   ) {
-    this.edges = new LineSet(uniforms);
+    // Over all surfaces, but under the picture on the image plane.
+    this.edges = new LineSet(uniforms, 9);
     const up = new Vector3(...scene.camera.up).normalize();
     // Many spheres are small ones.
     const round = scene.spheres.length <= MAX_FINE ? new SphereGeometry(1, 96, 64) : new SphereGeometry(1, 24, 16);

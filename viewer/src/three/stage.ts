@@ -21,6 +21,8 @@ export class Stage {
   readonly canvas = element('canvas', { tabindex: 0 });
   readonly camera = new PerspectiveCamera();
   readonly uniforms: ScreenUniforms = { size: { value: new Vector2(1, 1) }, ratio: { value: 1 }, near: { value: 1 } };
+  /** Pixels at the top and at the bottom that buttons and notes cover. */
+  covered: () => [top: number, bottom: number] = () => [0, 0];
   /** After each frame. */
   onFrame: () => void = () => {};
   onResize: () => void = () => {};
@@ -58,8 +60,9 @@ export class Stage {
     this.resizes.observe(this.canvas);
   }
 
+  /** Of the part that is free. */
   get aspect(): number {
-    return this.uniforms.size.value.x / this.uniforms.size.value.y;
+    return this.camera.aspect;
   }
 
   show(view: Viewpoint, smoothly: boolean): void {
@@ -81,11 +84,16 @@ export class Stage {
     this.renderer.forceContextLoss();
   }
 
+  /** Now, not with the next frame. */
+  render(): void {
+    this.renderer.render(this.scene, this.camera);
+  }
+
   private draw(now: number): void {
     this.frame = 0;
     if (this.flight.flying) this.flight.advance(now);
     else this.controls.update();
-    this.renderer.render(this.scene, this.camera);
+    this.render();
     this.onFrame();
     if (this.flight.flying) this.requestFrame();
   }
@@ -98,8 +106,11 @@ export class Stage {
     this.renderer.setSize(clientWidth, clientHeight, false);
     this.uniforms.size.value.set(clientWidth, clientHeight);
     this.uniforms.ratio.value = ratio;
-    this.camera.aspect = this.aspect;
-    this.camera.updateProjectionMatrix();
+    // What is looked at stands in the middle of the part that is free, if that is most of it.
+    const [top, bottom] = this.covered();
+    const free = clientHeight - top - bottom;
+    if (free > clientHeight / 2) this.camera.setViewOffset(clientWidth, free, 0, -top, clientWidth, clientHeight);
+    else this.camera.setViewOffset(clientWidth, clientHeight, 0, 0, clientWidth, clientHeight);
     this.onResize();
     this.requestFrame();
   }
@@ -112,6 +123,8 @@ export class Stage {
 
   private onKey(event: KeyboardEvent): void {
     const move = KEYS[event.key === '=' ? '+' : event.key];
+    // Arrows with Shift are for pixels.
+    if (event.shiftKey && event.key.startsWith('Arrow')) return;
     if (move === undefined || event.ctrlKey || event.metaKey || event.altKey) return;
     event.preventDefault();
     this.flight.stop();

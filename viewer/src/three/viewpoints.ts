@@ -13,15 +13,21 @@ export interface Viewpoint {
 }
 
 const FOV = 30;
-/** Room around what is shown, for buttons and names. */
+/** Room around what is shown, for names. */
 const MARGIN = 1.12;
+/** Around the picture. */
+const PICTURE_MARGIN = 1.03;
 
-/** From the side and a little above, so that the camera, the rays and the objects stand beside each other. */
-export function overview(camera: ViewCamera, extent: Extent, aspect: number): Viewpoint {
+/**
+ * From the side and a little above, so that the camera, the rays and the objects stand beside each other;
+ * more from behind if there is a picture on the image plane to be seen.
+ */
+export function overview(camera: ViewCamera, extent: Extent, aspect: number, pictured: boolean): Viewpoint {
   const up = new Vector3(...camera.up).normalize();
   const forward = imageCenter(camera).sub(new Vector3(...camera.eye)).normalize();
   const right = new Vector3().crossVectors(forward, up).normalize();
-  const direction = right.clone().multiplyScalar(0.92).addScaledVector(up, 0.42).addScaledVector(forward, -0.34).normalize();
+  const [sideways, back] = pictured ? [0.78, 0.56] : [0.92, 0.34];
+  const direction = right.clone().multiplyScalar(sideways).addScaledVector(up, 0.42).addScaledVector(forward, -back).normalize();
   return fitted(direction, up, extent.all, aspect);
 }
 
@@ -34,7 +40,7 @@ export function throughCamera(camera: ViewCamera, extent: Extent, aspect: number
   const height = Math.max(leftTop.distanceTo(leftBottom), rightBottom.distanceTo(leftBottom) / aspect);
   const forward = toPlane.normalize();
   const depth = Math.max(distance, bounds(extent.things).center.sub(position).dot(forward));
-  return { position, target: position.clone().addScaledVector(forward, depth), fov: angle((MARGIN * height) / 2 / distance) };
+  return { position, target: position.clone().addScaledVector(forward, depth), fov: angle((PICTURE_MARGIN * height) / 2 / distance) };
 }
 
 /** All objects as the light sees them. */
