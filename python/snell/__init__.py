@@ -12,6 +12,7 @@ Green because 53 % of this pixel is the sphere `green`, seen through `glass` (in
 from . import optics
 from ._native import __version__
 from .errors import OpticsError, PictureError, RenderError, SceneError, SnellError, SnellWarning
+from .frames import Sweep
 from .parts import Box, Camera, Globe, Lathe, Light, Material, Mesh, Plane, Render, Sky, Sphere, Texture
 from .picture import Difference, Picture, Sightings
 from .scene import Scene, scenes
@@ -21,6 +22,6 @@ from .tree import Hit, LightThere, Local, Node, RayTree, Sample
 __all__ = [
     "Box", "Camera", "Difference", "Globe", "Hit", "Lathe", "Light", "LightThere", "Local", "Material", "Mesh", "Node",
     "OpticsError", "Picture", "PictureError", "Plane", "RayTree", "Render", "RenderError", "Sample", "Scene",
-    "SceneError", "Sightings", "Sky", "SnellError", "SnellWarning", "Sphere", "Texture", "__version__", "optics",
-    "scenes", "sweep",
+    "SceneError", "Sightings", "Sky", "SnellError", "SnellWarning", "Sphere", "Sweep", "Texture", "__version__",
+    "optics", "scenes", "sweep",
 ]  # fmt: skip
