@@ -91,7 +91,9 @@ def _encode(
     except UnknownCodecError as error:
         raise PictureError([(None, f"PyAV was built without {coder}", "pip install --force-reinstall av")]) from error
     except av.FFmpegError as error:
-        raise PictureError([(path.suffix, f"cannot be encoded: {error.strerror or error}", None)]) from error
+        if isinstance(error, OSError):  # of the file
+            raise
+        raise PictureError([(None, f"{coder} cannot encode these frames: {error.strerror}", None)]) from error
 
 
 def _filtered(
