@@ -24,7 +24,14 @@ if TYPE_CHECKING:
 _SLIDE, _CELL = 1920, 1280  # pixels across a sheet
 _SLOWEST, _FASTEST = 0.1, 240
 _FASTEST_GIF = 50  # browsers take a delay below 2/100 s for 1/10 s
-_MOVIES = {".gif": "gif", ".png": "animate", ".apng": "animate", ".webp": "webp", ".mp4": "mp4"}
+#: Module and function that write a movie.
+_MOVIES = {
+    ".mp4": ("video", "mp4"),
+    ".gif": ("video", "gif"),
+    ".webp": ("video", "webp"),
+    ".apng": ("png", "animate"),
+    ".png": ("png", "animate"),
+}
 
 
 @dataclass(frozen=True, eq=True, repr=False)
@@ -120,12 +127,13 @@ class Sweep(Sequence[Path]):
         if ending not in _MOVIES:
             raise PictureError([(place, "no movie has this ending", f"known are {', '.join(_MOVIES)}")])
         fastest = _FASTEST_GIF if ending == ".gif" else _FASTEST
-        if not (isinstance(fps, int | float | np.number | Fraction) and _SLOWEST <= fps <= fastest):
+        if not (isinstance(fps, int | float | np.integer | np.floating) and _SLOWEST <= fps <= fastest):
             message = f"expected {_SLOWEST} to {fastest} frames per second, read {fps!r}"
             raise PictureError([("fps", message, "a GIF cannot be faster" if ending == ".gif" else None)])
         self._check_some()
         png.check_alike(self.frames)
-        write = getattr(png if _MOVIES[ending] == "animate" else _optional("video"), _MOVIES[ending])
+        module, function = _MOVIES[ending]
+        write = getattr(_optional(module), function)
         with replacing(path) as beside:
             write(self.frames, beside, Fraction(float(fps)).limit_denominator(250))  # APNG has 16 bits for each number
 

@@ -64,7 +64,7 @@ _HTML = (
     "<span>{name}</span>"
     '<span style="flex: 0 1 16em; height: 0.35em; border-radius: 1em; background: rgba(128, 128, 128, 0.3)">'
     '<span style="display: block; width: {percent:.1f}%; height: 100%; border-radius: 1em; background: #3b82f6"></span>'
-    '</span><span style="opacity: 0.7; font-variant-numeric: tabular-nums">{note}</span></div>'
+    '</span><span style="opacity: 0.7; font-variant-numeric: tabular-nums; white-space: pre">{note}</span></div>'
 )
 
 

@@ -15,7 +15,7 @@ _MOST = 60  # frames; more could not be told apart on a slide
 _SHAPE = 16 / 9
 _GAP = 0.07  # of the width of a picture
 _PAPER, _NAME, _TEXT = "#ffffff", "#8a8f98", "#1f2328"
-_SMALLEST_TEXT, _LARGEST_TEXT = 10, 26
+_SMALLEST_TEXT, _LARGEST_TEXT = 10, 28
 
 Label = Sequence[tuple[str, str]]
 
@@ -80,7 +80,7 @@ def _grid(labels: Sequence[Label], frame: tuple[int, int], columns: int | None, 
         scale = min(1, room / frame[0])
         label = min(room, longest * _SMALLEST_TEXT)  # there is room for it below the smallest frame
         picture = (math.floor(max(label, frame[0] * scale)), max(1, round(frame[1] * scale)))
-        text = min(_LARGEST_TEXT, 0.1 * picture[0], picture[0] / longest)
+        text = min(_LARGEST_TEXT, 0.12 * picture[0], picture[0] / longest)
         return _Grid(columns, math.ceil(count / columns), picture, max(_SMALLEST_TEXT, text), lines)
 
     def cost(grid: _Grid) -> float:

@@ -17,7 +17,7 @@ from av.video.stream import VideoStream
 
 from .errors import PictureError
 
-_BT709 = 1  # as HD television has its colours, which players assume
+_BT709, _16_TO_235 = 1, 1  # as HD television has its colours, which players assume
 _CONTAINER = {"mp4": {"movflags": "+faststart"}, "webp": {"loop": "0"}, "gif": {"loop": "0"}}
 
 
@@ -55,7 +55,8 @@ def _read(frames: Sequence[Path], fps: Fraction) -> Iterator[av.VideoFrame]:
 
 
 def _as(frame: av.VideoFrame, pixels: str) -> av.VideoFrame:
-    changed = frame.reformat(format=pixels, dst_colorspace=_BT709 if pixels == "yuv420p" else None)
+    television = {"dst_colorspace": _BT709, "dst_color_range": _16_TO_235} if pixels == "yuv420p" else {}
+    changed = frame.reformat(format=pixels, **television)
     changed.pts, changed.time_base = frame.pts, frame.time_base
     return changed
 
@@ -85,7 +86,7 @@ def _encode(
                     if stream.pix_fmt == "yuv420p":
                         context = stream.codec_context
                         context.colorspace = context.color_primaries = context.color_trc = _BT709
-                        context.color_range = 1  # 16 to 235
+                        context.color_range = _16_TO_235
                 file.mux(stream.encode(frame))
             file.mux(stream.encode(None))
     except UnknownCodecError as error:

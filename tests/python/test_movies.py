@@ -48,11 +48,12 @@ def test_a_movie_shows_the_frames(frames: snell.Sweep, ending: str, tmp_path: Pa
     shown = decoded(path)
     height, width = (62, 76) if ending == ".mp4" else (61, 75)
     assert {picture.shape for picture in shown} == {(height, width, 3)}
-    for picture, frame in zip(shown, frames, strict=True):
-        original = np.asarray(Image.open(frame), np.int64)
-        error = np.abs(picture[:61, :75] - original).mean()
-        # Exact, but for 256 colours in GIF and one colour for 2 x 2 pixels in MP4; frames differ by 3 and more.
-        assert error == 0 if ending not in (".gif", ".mp4") else error < 2.5, error
+    originals = [np.asarray(Image.open(frame), np.int64) for frame in frames]
+    for index, picture in enumerate(shown):
+        errors = [np.abs(picture[:61, :75] - original) for original in originals]
+        assert np.argmin([error.mean() for error in errors]) == index
+        # Exact, but for 256 colours in GIF, and one colour for 2 x 2 pixels in MP4.
+        assert errors[index].mean() <= {".gif": 1, ".mp4": 4}.get(ending, 0)
     assert [path.name for path in tmp_path.iterdir()] == [path.name]
 
 
@@ -78,6 +79,14 @@ def test_it_lasts_as_long_as_is_said(frames: snell.Sweep, ending: str, fps: floa
         assert all(abs(each - 1 / fps) <= step for each in seconds)
 
 
+@pytest.mark.parametrize("ending", MOVIES)
+def test_the_smallest_movie(ending: str, tmp_path: Path) -> None:
+    frame = snell.sweep(snell.scenes["lecture/default"], {}, tmp_path / "frames", width=1)
+    frame.save(tmp_path / f"movie{ending}")
+    assert len(decoded(tmp_path / f"movie{ending}")) == 1
+    assert frame.sheet().size[0] >= 1
+
+
 def test_mp4_plays_everywhere(frames: snell.Sweep, tmp_path: Path) -> None:
     frames.save(tmp_path / "movie.mp4")
     start = (tmp_path / "movie.mp4").read_bytes()
@@ -85,8 +94,13 @@ def test_mp4_plays_everywhere(frames: snell.Sweep, tmp_path: Path) -> None:
     with av.open(str(tmp_path / "movie.mp4")) as file:
         stream = file.streams.video[0]
         assert (stream.codec_context.name, stream.codec_context.pix_fmt) == ("h264", "yuv420p")
-        kinds = [frame.key_frame for frame in file.decode(video=0)]
+        shown = list(file.decode(video=0))
+    kinds = [frame.key_frame for frame in shown]
     assert kinds == [True, False, False, False, False], "frames are stored as differences"
+    # Brightness as BT.709 has it, from 16 to 235: rounding and compression are off by less than 1 on average, the
+    # weights of BT.601 by 2 and more, 0 to 255 by 13.
+    brightness = 16 + np.asarray(Image.open(frames[4])) @ [0.2126, 0.7152, 0.0722] * 219 / 255
+    assert np.abs(shown[4].to_ndarray()[:61, :75] - brightness).mean() < 1
 
 
 def test_a_sheet_shows_all_frames(frames: snell.Sweep, tmp_path: Path) -> None:
@@ -136,7 +150,7 @@ def test_a_failure_leaves_what_was_there(frames: snell.Sweep, ending: str, tmp_p
 
 
 def test_what_cannot_be_saved_is_said(frames: snell.Sweep, tmp_path: Path) -> None:
-    with pytest.raises(snell.PictureError, match=r"known are \.gif, \.png, \.apng, \.webp, \.mp4"):
+    with pytest.raises(snell.PictureError, match=r"known are \.mp4, \.gif, \.webp, \.apng, \.png"):
         frames.save(tmp_path / "movie.mov")
     with pytest.raises(snell.PictureError, match="a GIF cannot be faster"):
         frames.save(tmp_path / "movie.gif", fps=60)
