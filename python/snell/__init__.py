@@ -13,6 +13,7 @@ from . import optics
 from ._native import __version__
 from .channels import Channels
 from .errors import OpticsError, PictureError, RenderError, SceneError, SnellError, SnellWarning
+from .frames import Sweep
 from .interact import Interactive, interact
 from .parts import Box, Camera, Globe, Lathe, Light, Material, Mesh, Plane, Render, Sky, Sphere, Texture
 from .picture import Difference, Picture, Sightings
@@ -24,6 +25,6 @@ from .view import View
 __all__ = [
     "Box", "Camera", "Channels", "Difference", "Figure", "Globe", "Hit", "Interactive", "Lathe", "Light", "LightThere",
     "Local", "Material", "Mesh", "Node", "OpticsError", "Picture", "PictureError", "Plane", "RayTree", "Render",
-    "RenderError", "Sample", "Scene", "SceneError", "Sightings", "Sky", "SnellError", "SnellWarning", "Sphere",
+    "RenderError", "Sample", "Scene", "SceneError", "Sightings", "Sky", "SnellError", "SnellWarning", "Sphere", "Sweep",
     "Texture", "View", "__version__", "interact", "optics", "scenes", "sweep",
 ]  # fmt: skip

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from . import _native
-from .errors import SceneError, SnellWarning
+from .errors import Finding, SceneError, SnellWarning
 from .parts import Box, Camera, Lathe, Light, Material, Mesh, Plane, Render, Sky, Sphere, Texture
 from .picture import Picture, Sightings
 from .progress import watcher
@@ -221,10 +221,7 @@ class Scene(Value):
         size = table["render"].get("size")
         if (width, height) != (None, None) and isinstance(size, list) and len(size) == 2:
             text = _native.resized(text, _size(width, height, size))
-        compiled = _native.NativeScene(self.name, text, self._arrays(), Path(self.folder).absolute())
-        for place, message, _ in compiled.warnings():
-            warnings.warn(f"{place}: {message}" if place else message, SnellWarning, stacklevel=3)
-        return compiled
+        return _native.NativeScene(self.name, text, self._arrays(), Path(self.folder).absolute())
 
     def render(
         self,
@@ -251,7 +248,8 @@ class Scene(Value):
         threads : int
             0 for as many as the machine has.
         progress : bool or callable
-            A bar on a terminal for what takes longer; or what is called with pixels done, pixels in all, and rays.
+            A bar, on a terminal and in notebooks, for what takes longer; or what is called with pixels done, pixels in
+            all, and rays.
 
         Raises
         ------
@@ -266,11 +264,8 @@ class Scene(Value):
         >>> picture.array.shape, picture.array.dtype
         ((64, 64, 3), dtype('float64'))
         """
-        if not (isinstance(threads, int) and 0 <= threads <= _MOST_THREADS):
-            raise SceneError([("threads", f"expected 0 to {_MOST_THREADS}, read {threads!r}", None)])
-        compiled = self._compiled(width, height, integrator, spp)
-        with watcher(progress, self.name) as watch:
-            picture = Picture(compiled.render(threads, watch), self.name)
+        how = {"width": width, "height": height, "integrator": integrator, "spp": spp}
+        picture = self._rendered(set(), threads=threads, progress=progress, **how)
         if not picture.finished:
             warnings.warn("stopped: the picture is what was done by then", SnellWarning, stacklevel=2)
         return picture
@@ -291,6 +286,22 @@ class Scene(Value):
         <View of gallery/ball, 64 x 43>
         """
         return self.render(**how).view(height=height)
+
+    def _rendered(
+        self,
+        known: set[Finding],
+        *,
+        threads: int = 0,
+        progress: bool | Callable[[int, int, int], object] = True,
+        **how: Any,
+    ) -> Picture:
+        """Render, and warn the caller's caller of what is not known yet."""
+        if not (isinstance(threads, int) and 0 <= threads <= _MOST_THREADS):
+            raise SceneError([("threads", f"expected 0 to {_MOST_THREADS}, read {threads!r}", None)])
+        compiled = self._compiled(**how)
+        _warn(compiled, known, stacklevel=4)
+        with watcher(progress, self.name) as watch:
+            return Picture(compiled.render(threads, watch), self.name)
 
     def find(self, name: str, *, progress: bool | Callable[[int, int, int], object] = True) -> Sightings:
         """Return where an object is seen, and by which ways.
@@ -314,9 +325,19 @@ class Scene(Value):
         ('camera → glass(refract) → green', 12448)
         """
         compiled = self._compiled()
+        _warn(compiled, set(), stacklevel=3)
         with watcher(progress, self.name) as watch:
             paths, mask = compiled.find(name, watch)
         return Sightings(paths, mask)
+
+
+def _warn(compiled: _native.NativeScene, known: set[Finding], stacklevel: int) -> None:
+    """Warn of what is not known yet."""
+    for finding in compiled.warnings():
+        if finding not in known:
+            known.add(finding)
+            place, message, _ = finding
+            warnings.warn(f"{place}: {message}" if place else message, SnellWarning, stacklevel=stacklevel)
 
 
 def _material_name(reference: object, names: list[str], place: str) -> object:

@@ -7,6 +7,7 @@ import subprocess
 from pathlib import Path
 
 import numpy as np
+import pytest
 from numpy.typing import NDArray
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -41,3 +42,10 @@ def film(scene: str, folder: Path, *arguments: str) -> NDArray[np.float64]:
     snell("render", "--quiet", scene, "-o", str(output), *arguments)
     loaded: NDArray[np.float64] = np.load(output)
     return loaded
+
+
+def own_kernel(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let notebooks run in this interpreter's kernel, without what a person may have set up for it."""
+    for variable in ("JUPYTER_DATA_DIR", "JUPYTER_CONFIG_DIR", "JUPYTER_RUNTIME_DIR", "IPYTHONDIR"):
+        monkeypatch.setenv(variable, str(folder / variable))
+    monkeypatch.setenv("JUPYTER_PREFER_ENV_PATH", "1")
