@@ -84,6 +84,24 @@ def curves(x, ys: dict, xlabel: str, ylabel: str, top: float, marks: dict | None
 
 def ball(paths: list, radius: float, extent: tuple, labels: dict) -> None:
     """Draw rays, each an array of points (x, y), with a ball around the origin, and points with their names."""
+
+    def circle(at, scale):
+        x, y = at((0, 0)).split(",")
+        return f'<circle cx="{x}" cy="{y}" r="{radius * scale:.1f}" fill="#dbe8f4" stroke="#1f5fa8"/>'
+
+    _rays(paths, circle, extent, labels)
+
+
+def prism(paths: list, corners, extent: tuple, labels: dict, colors: list) -> None:
+    """Draw rays, each in its colour, with a piece of glass between corners."""
+
+    def polygon(at, scale):
+        return f'<polygon points="{" ".join(map(at, corners))}" fill="#dbe8f4" stroke="#1f5fa8"/>'
+
+    _rays(paths, polygon, extent, labels, colors)
+
+
+def _rays(paths: list, glass, extent: tuple, labels: dict, colors: list | None = None) -> None:
     left, right, low, high = extent
     scale = 640 / (right - left)
     width, height = 640, round((high - low) * scale)
@@ -91,12 +109,10 @@ def ball(paths: list, radius: float, extent: tuple, labels: dict) -> None:
     def at(point):
         return f"{(point[0] - left) * scale:.1f},{(high - point[1]) * scale:.1f}"
 
-    x, y = at((0, 0)).split(",")
-    parts = [f'<rect width="{width}" height="{height}" fill="white"/>']
-    parts.append(f'<circle cx="{x}" cy="{y}" r="{radius * scale:.1f}" fill="#dbe8f4" stroke="#1f5fa8"/>')
-    for path in paths:
+    parts = [f'<rect width="{width}" height="{height}" fill="white"/>', glass(at, scale)]
+    for path, color in zip(paths, colors or ["#c2410c"] * len(paths)):
         points = " ".join(map(at, path))
-        parts.append(f'<polyline points="{points}" fill="none" stroke="#c2410c" stroke-width="1.2"/>')
+        parts.append(f'<polyline points="{points}" fill="none" stroke="{color}" stroke-width="1.2"/>')
     for label, point in labels.items():
         x, y = at(point).split(",")
         parts.append(f'<circle cx="{x}" cy="{y}" r="3"/><text x="{x}" y="{float(y) - 8:.1f}">{escape(label)}</text>')
