@@ -123,6 +123,14 @@ class Picture:
         """Rays of all kinds that were traced."""
         return self._native.rays
 
+    @property
+    def remarks(self) -> list[str]:
+        """What rendering has come upon, in words: light that was not followed, solids that overlap or are open.
+
+        ``docs/warnings.md`` lists them. Of all but lost light (W202) `Scene.render` warns, too.
+        """
+        return [text for _, text in self._native.warnings()]
+
     def __array__(self, dtype: DTypeLike | None = None, copy: bool | None = None) -> NDArray[Any]:
         same = dtype is None or np.dtype(dtype) == self.array.dtype
         if copy is False and not same:

@@ -28,6 +28,7 @@ _LISTS: Mapping[str, type[Value]] = {
 _TABLES: Mapping[str, type[Value]] = {"render": Render, "camera": Camera, "sky": Sky}
 _NAMED: Mapping[str, type[Value]] = {"material": Material, "texture": Texture}
 _MOST_THREADS = 4096
+_LOST_LIGHT = "W202 lost-light"
 
 
 @dataclass(eq=False, repr=False, kw_only=True)
@@ -299,9 +300,13 @@ class Scene(Value):
         if not (isinstance(threads, int) and 0 <= threads <= _MOST_THREADS):
             raise SceneError([("threads", f"expected 0 to {_MOST_THREADS}, read {threads!r}", None)])
         compiled = self._compiled(**how)
-        _warn(compiled, known, stacklevel=4)
+        _warn(compiled.warnings(), known, stacklevel=4)
         with watcher(progress, self.name) as watch:
-            return Picture(compiled.render(threads, watch), self.name)
+            picture = Picture(compiled.render(threads, watch), self.name)
+        # Lost light is nothing odd: every hall of mirrors has some.
+        found = [text for code, text in picture._native.warnings() if code != _LOST_LIGHT]
+        _warn([(None, text, None) for text in found], known, stacklevel=4)
+        return picture
 
     def find(self, name: str, *, progress: bool | Callable[[int, int, int], object] = True) -> Sightings:
         """Return where an object is seen, and by which ways.
@@ -325,15 +330,15 @@ class Scene(Value):
         ('camera → glass(refract) → green', 12448)
         """
         compiled = self._compiled()
-        _warn(compiled, set(), stacklevel=3)
+        _warn(compiled.warnings(), set(), stacklevel=3)
         with watcher(progress, self.name) as watch:
             paths, mask = compiled.find(name, watch)
         return Sightings(paths, mask)
 
 
-def _warn(compiled: _native.NativeScene, known: set[Finding], stacklevel: int) -> None:
+def _warn(findings: Sequence[Finding], known: set[Finding], stacklevel: int) -> None:
     """Warn of what is not known yet."""
-    for finding in compiled.warnings():
+    for finding in findings:
         if finding not in known:
             known.add(finding)
             place, message, _ = finding

@@ -9,7 +9,7 @@ use serde_json::json;
 use snell::film::transfer::Encoding;
 use snell::film::{BYTES_PER_PIXEL, Crop};
 use snell::render::{Options, RenderError, Rendered, render};
-use snell::scene::{Integrator, WarningCode};
+use snell::scene::WarningCode;
 use snell::world::World;
 use snell_formats::load::Loaded;
 use snell_formats::picture::{self, Format};
@@ -284,6 +284,10 @@ fn summary(
     let (worst_x, worst_y) = lost.worst_pixel(world.camera.size[0]);
     let hash = recipe.film_sha256.as_deref();
     if args.progress == ProgressKind::Json {
+        for warning in statistics.warnings(world, pixels) {
+            let (code, message) = (warning.code.code(), &warning.message);
+            eprintln!("{}", json!({ "event": "warning", "code": code, "message": message, "place": null }));
+        }
         let tree = world.tree();
         eprintln!(
             "{}",
@@ -317,44 +321,9 @@ fn summary(
     );
     if lost.rays > 0 && world.render.max_depth == 0 {
         eprintln!("  depth 0: mirrors and glass send no rays on");
-    } else if lost.rays > 0 {
-        eprintln!(
-            "  {}: depth {}{} ended {} branches; what lies behind them weighs {:.2} % of a pixel on average, \
-             {:.1} % in pixel {worst_x},{worst_y}",
-            WarningCode::LostLight.code(),
-            world.render.max_depth,
-            if world.render.integrator == Integrator::Whitted { " or too little light" } else { "" },
-            short(lost.rays as f64),
-            100.0 * lost.share(pixels),
-            100.0 * lost.worst(),
-        );
     }
-    let stray = &statistics.stray;
-    if let Some(pixel) = stray.first_pixel {
-        let width = u64::from(world.camera.size[0]);
-        eprintln!(
-            "  {}: {} rays lost count of the solids that they are in, first in pixel {},{}: does a mesh cross \
-             itself? `snell check` shows where",
-            WarningCode::StrayExit.code(),
-            short(stray.count as f64),
-            pixel % width,
-            pixel / width,
-        );
-    }
-    if let Some(overlap) = &statistics.overlaps.first {
-        let width = u64::from(world.camera.size[0]);
-        let name = |primitive: u32| world.object_of(primitive).map_or("?", |object| object.name.as_str());
-        let ([a, b], p) = (overlap.primitives.map(name), overlap.point);
-        eprintln!(
-            "  {}: `{a}` and `{b}` overlap with the same priority, first seen at ({}, {}, {}) in pixel {},{}: the one \
-             entered last is there; give one of their materials a higher `priority`",
-            WarningCode::Overlap.code(),
-            p.x,
-            p.y,
-            p.z,
-            overlap.pixel % width,
-            overlap.pixel / width,
-        );
+    for warning in statistics.warnings(world, pixels) {
+        eprintln!("  {warning}");
     }
 }
 

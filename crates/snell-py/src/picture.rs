@@ -14,6 +14,7 @@ use snell::explain::{Channels, Names, ViewScene, channels, hits};
 use snell::film::transfer::{Encoding, Rounding, Transfer};
 use snell::film::{Crop, Film, Rgb};
 use snell::render::{RenderError, Rendered, render};
+use snell::scene::Warning;
 use snell_formats::picture::{self, Format};
 use snell_formats::{Report, disk};
 use std::path::PathBuf;
@@ -27,6 +28,7 @@ pub struct NativePicture {
     ready: Arc<Ready>,
     seconds: f64,
     rays: u64,
+    warnings: Vec<Warning>,
 }
 
 impl NativePicture {
@@ -41,7 +43,8 @@ impl NativePicture {
         }
         let failed = |error: RenderError| raise(py, "RenderError", vec![(None, error.to_string(), None)]);
         let Rendered { film, statistics } = rendered.map_err(failed)?;
-        Ok(Self { film, ready, seconds, rays: statistics.rays.total() })
+        let warnings = statistics.warnings(&ready.world, film.pixels.len() as u64);
+        Ok(Self { film, ready, seconds, rays: statistics.rays.total(), warnings })
     }
 
     /// Rows and columns.
@@ -115,6 +118,11 @@ impl NativePicture {
         self.rays
     }
 
+    /// What was found while rendering: number and name, and the whole text.
+    fn warnings(&self) -> Vec<(&'static str, String)> {
+        self.warnings.iter().map(|warning| (warning.code.code(), warning.to_string())).collect()
+    }
+
     /// As a PNG of 8 bit.
     fn png<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         let bytes = py.detach(|| picture::png_bytes(&self.film, self.encoding(), Some(&self.recipe())));
@@ -137,7 +145,8 @@ impl NativePicture {
     /// A part of it, by left, top, width, height in the whole picture.
     fn part(&self, x: u32, y: u32, width: u32, height: u32) -> Option<Self> {
         let film = self.film.part(Crop { x, y, width, height })?;
-        Some(Self { film, ready: Arc::clone(&self.ready), seconds: self.seconds, rays: self.rays })
+        let (ready, warnings) = (Arc::clone(&self.ready), self.warnings.clone());
+        Some(Self { film, ready, seconds: self.seconds, rays: self.rays, warnings })
     }
 
     /// What the camera's rays met: depth, normal, number of the object; and the names of the objects.

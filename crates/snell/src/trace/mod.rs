@@ -26,6 +26,7 @@ mod sampler;
 mod shading;
 mod statistics;
 mod tree;
+mod warnings;
 mod whitted;
 
 pub(crate) use generation::Tracer;

@@ -3,7 +3,7 @@
 use super::solid::MeshSolids;
 use super::surface::{FLAT, Surfaces};
 use super::{NO_PRIMITIVE, NO_SOLID, Object, Solid, World};
-use crate::geometry::mesh::MAX_SMOOTHED_VALENCE;
+use crate::geometry::mesh::{MAX_SMOOTHED_VALENCE, NormalWeights};
 use crate::geometry::solid::{Options, repair, structure};
 use crate::geometry::{Affine, Bounds, TriangleMesh, Vec3, triangle};
 use crate::scene::{Integrator, LARGEST_NUMBER, Mesh, OpenMesh, Problem, Step, Warning, WarningCode, whole_map};
@@ -112,7 +112,11 @@ impl World {
             let help = "give it a material without texture, or a model file with texture coordinates".to_owned();
             return Err(refused((format!("`{name}` has no texture coordinates for its texture"), help)));
         }
-        let corner_normals = (mesh.smooth_angle > 0.0).then(|| placed.smooth_normals(mesh.smooth_angle));
+        let weights = match self.render.integrator {
+            Integrator::Whitted => NormalWeights::Angle,
+            _ => NormalWeights::Equal,
+        };
+        let corner_normals = (mesh.smooth_angle > 0.0).then(|| placed.smooth_normals(mesh.smooth_angle, weights));
         let is_model = !mesh.instances.is_empty();
         let (surfaces, triangles) = if is_model {
             self.models.push(Surfaces::default());
