@@ -184,18 +184,19 @@ export class Viewer {
   private showPixels(): void {
     const { drawing } = this;
     if (drawing === null) return;
-    const size = this.sizeOfPicture();
+    const size = drawing.plane.size;
     drawing.picksPixels = this.listeners.pixel.size > 0;
-    drawing.mark(this.pixel, size);
+    drawing.mark(this.pixel, this.tree && this.pixel === this.tree.pixel ? this.tree.size : size);
     this.pictureBox.hidden = drawing.plane.size === null;
-    this.alternative.textContent = alternative(this.data.scene, this.tree !== null, drawing.picksPixels && size !== null);
-    const asks = drawing.picksPixels && drawing.plane.size !== null && this.pixel === null;
+    this.alternative.textContent = alternative(this.data.scene, this.tree !== null, drawing.picksPixels && this.pixelsSize() !== null);
+    const asks = drawing.picksPixels && size !== null && this.pixel === null;
     this.showNote({ hint: asks ? 'Look through the camera and click a pixel to see its rays.' : '' });
     const rays = this.tree ? ` and the rays of pixel (${this.tree.pixel.join(', ')})` : '';
     drawing.stage.canvas.setAttribute('aria-label', `The scene${rays} in 3D`);
   }
 
-  private sizeOfPicture(): Pixel | null {
+  /** Columns and rows of what pixels are asked for. */
+  private pixelsSize(): Pixel | null {
     return this.drawing?.plane.size ?? this.tree?.size ?? null;
   }
 
@@ -206,7 +207,7 @@ export class Viewer {
   }
 
   private onKey(event: KeyboardEvent): void {
-    const size = this.sizeOfPicture();
+    const size = this.pixelsSize();
     if (!event.shiftKey || event.ctrlKey || event.metaKey || event.altKey || size === null || this.listeners.pixel.size === 0) return;
     const pixel = nextPixel(event.key, this.pixel, size);
     if (pixel === null) return;
@@ -272,9 +273,7 @@ export class Viewer {
         this.pictureBox,
         shadows,
       );
-      // In a narrow viewer they are beside the drawing, not on it.
-      const height = (part: HTMLElement) => (getComputedStyle(part).position === 'absolute' ? part.offsetHeight : 0);
-      drawing.stage.covered = () => [height(toolbar), height(footer)];
+      drawing.stage.cover(toolbar, footer);
       view.append(drawing.root, toolbar, this.alternative);
     }
     view.append(footer);

@@ -60,7 +60,7 @@ class WidgetView {
     this.listen('change:scene', () => this.show());
     this.listen('change:title', () => this.show());
     this.listen('change:tree', () => this.showTree());
-    this.listen('change:picture', () => this.attempt((viewer) => void viewer.setPicture(this.picture())));
+    this.listen('change:picture', () => this.attempt(() => void this.viewer?.setPicture(this.picture())));
     this.listen('change:height', () => this.setHeight());
     this.listen('msg:custom', (message) => this.hear(message));
     this.ends.push(hideStillBefore(el), onJupyterTheme(() => this.viewer?.setScheme(jupyterScheme())));
@@ -94,9 +94,9 @@ class WidgetView {
   }
 
   /** Data that cannot be shown becomes a text in the notebook. */
-  private attempt(act: (viewer: Viewer) => void): void {
+  private attempt(act: () => void): void {
     try {
-      act(this.viewer!);
+      act();
     } catch (error) {
       if (!(error instanceof ViewerDataError)) throw error;
       if (this.viewer) this.viewer.setNote(error.message);
@@ -110,9 +110,9 @@ class WidgetView {
     // An answer to an earlier question: the last one is still to come.
     if (asked && tree && !(tree.pixel[0] === asked[0] && tree.pixel[1] === asked[1])) return;
     this.asked = null;
-    this.attempt((viewer) => {
-      viewer.setNote('');
-      viewer.setTree(tree);
+    this.attempt(() => {
+      this.viewer?.setNote('');
+      this.viewer?.setTree(tree);
     });
   }
 

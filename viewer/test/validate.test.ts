@@ -23,6 +23,11 @@ describe('validation', () => {
     expect(() => validate(glass())).not.toThrow();
   });
 
+  test('accepts a scene without a tree', () => {
+    const { scene } = glass();
+    for (const data of [{ scene }, { scene, tree: null, picture: new Uint8Array(4), title: 'glass' }]) expect(() => validate(data)).not.toThrow();
+  });
+
   test('names a wrong version, and what to do', () => {
     expect(complaint('tree.snell_ray_tree', 2)).toBe(
       'tree.snell_ray_tree: expected version 1 (take the viewer that comes with the snell that wrote this), found 2',
@@ -45,6 +50,9 @@ describe('validation', () => {
     ['scene.camera.corners.3', [0, 0, Infinity], 'scene.camera.corners[3]: expected three numbers, found [0,0,null]'],
     ['scene.lights.1.direction', null, 'scene.lights[1].direction: expected three numbers, found null'],
     ['scene', 'glass', 'scene: expected an object, found "glass"'],
+    ['scene.transfer', 'gamma', 'scene.transfer: expected one of srgb, linear, found "gamma"'],
+    ['picture', 'x.png', 'picture: expected the bytes of a PNG, found "x.png"'],
+    ['title', 7, 'title: expected a text, found 7'],
   ])('%s = %j', (path, value, message) => {
     expect(complaint(path, value)).toBe(message);
   });

@@ -24,13 +24,14 @@ export function extentOf(scene: ViewScene, nodes: RayNode[]): Extent {
     (spheres) => spheres.length > 0,
   );
   // Without rays, the objects decide themselves.
-  const shown = ends.length > 0 ? objects : subjects(objects, new Vector3(...scene.camera.eye));
-  const core = bounds([...camera, ...(ends.length > 0 ? ends : shown.flat())]);
+  const seen = ends.length > 0 ? ends : subjects(objects, new Vector3(...scene.camera.eye));
+  const core = bounds([...camera, ...seen]);
+  const far = ends.length > 0 ? FAR : FAR / 2;
   const near = (spheres: Sphere[]) => {
     const { center, radius } = bounds(spheres);
-    return center.distanceTo(core.center) + radius <= FAR * core.radius;
+    return center.distanceTo(core.center) + radius <= far * core.radius;
   };
-  const things = [...ends, ...shown.filter(near).flat()];
+  const things = [...seen, ...objects.filter(near).flat()];
   const lamps = scene.lights.flatMap(({ position }) => (position === null ? [] : [point(position)])).filter((lamp) => near([lamp]));
   const all = [...camera, ...things, ...lamps];
   const extent = { things: things.length > 0 ? things : camera, all, ...bounds(all) };
@@ -39,7 +40,7 @@ export function extentOf(scene: ViewScene, nodes: RayNode[]): Extent {
 }
 
 /** The objects that stand before the eye instead of around it, from near to far, until one is much farther than those before. */
-function subjects(objects: Sphere[][], eye: Vector3): Sphere[][] {
+function subjects(objects: Sphere[][], eye: Vector3): Sphere[] {
   const seen = objects.map((spheres) => {
     const { center, radius } = bounds(spheres);
     const distance = center.distanceTo(eye);
@@ -48,7 +49,7 @@ function subjects(objects: Sphere[][], eye: Vector3): Sphere[][] {
   const before = seen.some(({ wide }) => !wide) ? seen.filter(({ wide }) => !wide) : seen;
   before.sort((a, b) => a.reach - b.reach);
   const end = before.findIndex(({ reach }, index) => index > 0 && reach > FAR * before[index - 1]!.reach);
-  return before.slice(0, end < 0 ? before.length : end).map(({ spheres }) => spheres);
+  return before.slice(0, end < 0 ? before.length : end).flatMap(({ spheres }) => spheres);
 }
 
 /** Where the arrow of a light at infinity begins. */

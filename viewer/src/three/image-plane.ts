@@ -115,7 +115,7 @@ export class ImagePlane {
     this.update();
   }
 
-  /** Marks a place, unless the mark would hide the picture. The place: parts of the width from the left and of the height from the top. */
+  /** Marks a place: parts of the width from the left and of the height from the top. */
   mark(place: [number, number] | null): void {
     const at = place && this.corner.clone().addScaledVector(this.right, place[0]).addScaledVector(this.down, place[1]);
     this.marks.set(at === null ? [] : [{ at: at.toArray() as Vec3, color: '#ffffff', size: MARK, opacity: 1, shape: 'frame' }]);
@@ -126,6 +126,7 @@ export class ImagePlane {
     const to = this.corner.clone().sub(camera.position);
     // Nearly all things are behind the plane as the camera sees it: the picture covers them from there, and they it from beyond.
     this.picture.renderOrder = to.dot(this.forward) < 0 ? BEHIND : BEFORE;
+    // The mark must not hide a small picture.
     const pixels = (height * this.down.length()) / (2 * Math.tan(MathUtils.degToRad(camera.fov) / 2) * to.length());
     this.marks.points.visible = this.picture.visible && pixels > 8 * MARK;
   }

@@ -63,8 +63,9 @@ export class Names {
       context.fillStyle = color;
       // Shadows of a canvas are not scaled with it.
       context.shadowColor = textShadow.match(/^rgba?\([^)]*\)/)?.[0] ?? 'transparent';
-      context.shadowBlur = 4 * scale;
-      context.fillText(label.textContent, ...place);
+      context.shadowBlur = 3 * scale;
+      // The style sheet has three shadows too.
+      for (let shadow = 0; shadow < 3; shadow++) context.fillText(label.textContent, ...place);
     }
     context.shadowColor = 'transparent';
   }

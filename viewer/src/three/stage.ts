@@ -21,8 +21,6 @@ export class Stage {
   readonly canvas = element('canvas', { tabindex: 0 });
   readonly camera = new PerspectiveCamera();
   readonly uniforms: ScreenUniforms = { size: { value: new Vector2(1, 1) }, ratio: { value: 1 }, near: { value: 1 } };
-  /** Pixels at the top and at the bottom that buttons and notes cover. */
-  covered: () => [top: number, bottom: number] = () => [0, 0];
   /** After each frame. */
   onFrame: () => void = () => {};
   onResize: () => void = () => {};
@@ -34,6 +32,8 @@ export class Stage {
   private readonly resizes = new ResizeObserver(() => this.resize());
   private readonly calm = window.matchMedia('(prefers-reduced-motion: reduce)');
   private frame = 0;
+  private above: HTMLElement | null = null;
+  private below: HTMLElement | null = null;
 
   /** Throws where there is no WebGL. `radius` is that of the whole drawing. */
   constructor(up: Vector3, radius: number) {
@@ -63,6 +63,13 @@ export class Stage {
   /** Of the part that is free. */
   get aspect(): number {
     return this.camera.aspect;
+  }
+
+  /** Keeps what is looked at clear of buttons above and notes below. */
+  cover(above: HTMLElement, below: HTMLElement): void {
+    [this.above, this.below] = [above, below];
+    // Notes come and go, and should not move the drawing.
+    this.resizes.observe(above);
   }
 
   show(view: Viewpoint, smoothly: boolean): void {
@@ -107,7 +114,7 @@ export class Stage {
     this.uniforms.size.value.set(clientWidth, clientHeight);
     this.uniforms.ratio.value = ratio;
     // What is looked at stands in the middle of the part that is free, if that is most of it.
-    const [top, bottom] = this.covered();
+    const [top, bottom] = [coverOf(this.above), coverOf(this.below)];
     const free = clientHeight - top - bottom;
     if (free > clientHeight / 2) this.camera.setViewOffset(clientWidth, free, 0, -top, clientWidth, clientHeight);
     else this.camera.setViewOffset(clientWidth, clientHeight, 0, 0, clientWidth, clientHeight);
@@ -132,4 +139,9 @@ export class Stage {
     this.onMove();
     this.requestFrame();
   }
+}
+
+/** Its height, if it is not beside the drawing but on it. */
+function coverOf(part: HTMLElement | null): number {
+  return part !== null && getComputedStyle(part).position === 'absolute' ? part.offsetHeight : 0;
 }

@@ -10,14 +10,9 @@ export function stillOf(canvas: HTMLCanvasElement, names: Names, theme: Theme, m
   const [width, height] = [Math.round(scale * canvas.width), Math.round(scale * canvas.height)];
   const sheet = element('canvas', { width, height });
   const context = sheet.getContext('2d')!;
-  // The ground, as the style sheet has it: an ellipse through the farthest corner.
-  const ground = context.createRadialGradient(0, 0, 0, 0, 0, 1);
-  ground.addColorStop(0, theme.glow);
-  ground.addColorStop(1, theme.rim);
-  context.fillStyle = ground;
-  context.setTransform(Math.SQRT1_2 * width, 0, 0, Math.SQRT2 * 0.58 * height, 0.5 * width, 0.42 * height);
-  context.fillRect(-1, -1, 2, 2);
-  context.resetTransform();
+  // Not the gradient of the page: it would make the file many times as large, and notebooks are kept under version control.
+  context.fillStyle = theme.paper;
+  context.fillRect(0, 0, width, height);
   context.drawImage(canvas, 0, 0, width, height);
   names.paint(context, width / canvas.clientWidth);
   return new Promise((resolve, reject) => {
