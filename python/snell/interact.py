@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from .errors import SceneError, SnellError
-from .notebook import INSTALL, Still, has_widgets
+from .notebook import INSTALL, Still, has_widgets, show
 from .picture import Picture
 from .scene import Scene
 from .values import plain
@@ -125,7 +125,7 @@ class Interactive:
 
         sliders = [self._slider(ipywidgets, key, control) for key, control in self._controls.items()]
         self._says = ipywidgets.Label()
-        sys.modules["IPython"].display.display(ipywidgets.VBox([*sliders, self._says]))
+        show(ipywidgets.VBox([*sliders, self._says]), "(run the cell for its sliders)")
 
     def _slider(self, ipywidgets: Any, key: str, control: Control) -> Any:
         """Return the widget of a key; its front end sends only the newest value while a picture is rendered."""

@@ -16,6 +16,13 @@ def has_widgets() -> bool:
     return importlib.util.find_spec("anywidget") is not None
 
 
+def show(widget: Any, otherwise: str) -> None:
+    """Show a widget; `otherwise` is what stands there where it is only read."""
+    bundle = widget._repr_mimebundle_()
+    data = bundle[0] if isinstance(bundle, tuple) else bundle
+    sys.modules["IPython"].display.display({**data, "text/plain": otherwise}, raw=True)
+
+
 class Still:
     """A picture in the output of a cell that can be changed later. A saved notebook keeps it as an ordinary picture."""
 

@@ -7,7 +7,7 @@ import sys
 from typing import Any
 
 from .errors import PictureError, SnellError
-from .notebook import INSTALL, Still, has_widgets
+from .notebook import INSTALL, Still, has_widgets, show
 from .picture import Picture
 from .tree import RayTree
 
@@ -64,6 +64,7 @@ class View:
         self._tree = tree
         if self._widget is not None:
             self._widget.tree = _plain(tree)
+            self._widget.send_state("tree")  # also if it is the same: the front end waits for it
 
     def explain(self, x: int, y: int) -> RayTree:
         """Draw the rays of a pixel, as a click on it does."""
@@ -88,7 +89,7 @@ class View:
                 height=self._height,
             )
             self._widget.on_msg(self._hear)
-        sys.modules["IPython"].display.display(self._widget)
+        show(self._widget, "(run the cell for the view in 3D)")
 
     def _hear(self, widget: Any, message: Any, buffers: list[Any]) -> None:
         """Answer the front end: a pixel was clicked on, or it has drawn something."""

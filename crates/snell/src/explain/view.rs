@@ -1,6 +1,7 @@
 //! The scene as the viewer draws it: shapes, camera and lights as plain data, version 1 of its JSON form.
 
 use super::Names;
+use crate::film::transfer::Transfer;
 use crate::geometry::Bounds;
 use serde::Serialize;
 
@@ -12,6 +13,8 @@ const MOST_FACES: u32 = 40_000;
 pub struct ViewScene {
     /// The version of this form: 1.
     snell_view: u32,
+    /// The curve by which colours are shown.
+    transfer: Transfer,
     spheres: Vec<ViewSphere>,
     meshes: Vec<ViewMesh>,
     camera: ViewCamera,
@@ -101,6 +104,6 @@ impl ViewScene {
             corners: world.camera.corners().map(Into::into),
             up: world.camera.axes[1].into(),
         };
-        Self { snell_view: 1, spheres, meshes, camera, lights: lights.collect() }
+        Self { snell_view: 1, transfer: world.render.transfer, spheres, meshes, camera, lights: lights.collect() }
     }
 }
