@@ -22,6 +22,8 @@ python_package() {
     "$python" -m ruff format --check --quiet
     SNELL=$PWD/target/ci/snell "$python" -m pytest -q --doctest-modules --pyargs snell tests/python
 }
+# As a student sees it. What starts here and where is its own: see the test.
+jupyterlab() { PYTHON=$PWD/target/python/bin/python node --test tests/jupyterlab/; }
 documentation() { RUSTDOCFLAGS='-D warnings' cargo doc --locked --quiet --workspace --no-deps --profile ci; }
 # An intrinsic that is a function of its own was called from code without the instructions of its width: each operation
 # becomes a call through memory, and nothing but the time tells. Only those on f64 are ours; memchr has such functions too.
@@ -66,6 +68,7 @@ stage 'Rust tests' cargo test --locked --quiet --workspace --profile ci
 stage 'Python tests: the slow oracle, the schema' oracle
 stage 'the Python package' python_package
 stage 'the viewer, in Chromium' viewer
+stage 'a notebook in JupyterLab, in Chromium' jupyterlab
 stage 'documentation' documentation
 stage 'fuzz targets compile' cargo check --locked --quiet --manifest-path fuzz/Cargo.toml --target-dir target/fuzz
 stage 'the library for ARM' cargo check --locked --quiet --package snell --target aarch64-unknown-linux-gnu --profile ci

@@ -8,6 +8,8 @@ import sys
 import threading
 import time
 
+import pytest
+
 import snell
 
 SCRIPT = """
@@ -21,8 +23,30 @@ print(picture.finished, picture.array.shape[1], picture.array.max() > 0)
 """
 
 
-def test_interrupted_within_a_second() -> None:
-    with subprocess.Popen([sys.executable, "-c", SCRIPT], stdout=subprocess.PIPE, text=True) as process:
+SEARCHES = """
+import snell
+scene = snell.scenes["gallery/brilliant"].with_("render.spp", 64)
+large = scene.render(width=600, spp=1)
+print("ready", flush=True)
+try:
+    {search}
+except KeyboardInterrupt:
+    print("back", flush=True)
+    print("stopped", flush=True)
+"""
+
+
+@pytest.mark.parametrize(
+    ("script", "then"),
+    [
+        (SCRIPT, "False 2000 True"),
+        (SEARCHES.format(search='scene.find("diamond")'), "stopped"),
+        (SEARCHES.format(search="large.channels.hits"), "stopped"),
+    ],
+    ids=["render", "find", "channels"],
+)
+def test_interrupted_within_a_second(script: str, then: str) -> None:
+    with subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, text=True) as process:
         assert process.stdout is not None
         assert process.stdout.readline() == "ready\n"
         time.sleep(1.5)
@@ -30,7 +54,7 @@ def test_interrupted_within_a_second() -> None:
         started = time.monotonic()
         assert process.stdout.readline() == "back\n"
         waited = time.monotonic() - started
-        assert process.stdout.readline() == "False 2000 True\n"
+        assert process.stdout.readline() == f"{then}\n"
     assert waited < 1, f"{waited:.2f} s"
     assert process.returncode == 0
 
