@@ -1,7 +1,7 @@
 # Everything goes through these. What they need is installed without asking; what cannot be is named.
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test fuzz bench bench-peers pictures clean
+.PHONY: help demo test fuzz bench bench-peers pictures notebooks clean
 
 help: ## This list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-11s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -23,6 +23,9 @@ bench-peers: ## Compare with POV-Ray and Embree where they are installed, and me
 
 pictures: ## Render the pictures of the documentation anew
 	@scripts/pictures.sh
+
+notebooks: ## Run the notebooks of the documentation anew, in JupyterLab
+	@scripts/notebooks.sh
 
 clean: ## Remove what was built
 	cargo clean

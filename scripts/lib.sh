@@ -83,6 +83,12 @@ need_chromium() {
     [ -x /usr/bin/chromium ] || missing 'Chromium' 'sudo apt-get install chromium'
 }
 
+# What the viewer is built and tested with; fetched again when the list of it has changed.
+need_viewer_packages() {
+    cmp -s viewer/package-lock.json viewer/node_modules/.fetched && return
+    (cd viewer && npm ci --silent --no-audit --no-fund) && cp viewer/package-lock.json viewer/node_modules/.fetched
+}
+
 # Node runs the WASM tests and builds the viewer; 20 is the oldest that its tools run on.
 need_node() {
     node --eval 'process.exit(parseInt(process.versions.node) < 20 ? 1 : 0)' 2>/dev/null ||

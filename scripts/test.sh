@@ -22,7 +22,6 @@ python_package() {
     "$python" -m ruff format --check --quiet
     SNELL=$PWD/target/ci/snell "$python" -m pytest -q --doctest-modules --pyargs snell tests/python
 }
-# As a student sees it. What starts here and where is its own: see the test.
 jupyterlab() { PYTHON=$PWD/target/python/bin/python node --test tests/jupyterlab/; }
 documentation() { RUSTDOCFLAGS='-D warnings' cargo doc --locked --quiet --workspace --no-deps --profile ci; }
 # An intrinsic that is a function of its own was called from code without the instructions of its width: each operation
@@ -52,10 +51,7 @@ same_bits_in_wasm() {
 }
 
 viewer() {
-    # The packages are fetched again when the list of them has changed.
-    if ! cmp -s viewer/package-lock.json viewer/node_modules/.fetched; then
-        (cd viewer && npm ci --silent --no-audit --no-fund) && cp viewer/package-lock.json viewer/node_modules/.fetched
-    fi
+    need_viewer_packages
     (cd viewer && SNELL=$PWD/../target/ci/snell npm test --silent)
 }
 

@@ -4,49 +4,38 @@
 //   PYTHON=target/python/bin/python node --test tests/jupyterlab/
 
 import assert from 'node:assert/strict';
-import { spawn } from 'node:child_process';
 import { createHash } from 'node:crypto';
-import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
-import { createRequire } from 'node:module';
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { fileURLToPath } from 'node:url';
-
-const root = fileURLToPath(new URL('../..', import.meta.url));
-const { chromium } = createRequire(join(root, 'viewer/package.json'))('playwright-core');
-const python = process.env.PYTHON ?? join(root, 'target/python/bin/python');
+import { launch, PATIENCE, runAll, save, Server } from './jupyterlab.mjs';
 
 const CELLS = [
   "import snell\nscene = snell.scenes['lecture/default']\nsnell.interact(scene, eta=(1.0, 4.0), width=200)",
   'scene.view(width=256)',
 ];
-// A machine with other work may take this long to start a kernel.
-const PATIENCE = { timeout: 120_000 };
-
-let folder, browser, server, page;
+const server = new Server();
 const trouble = [];
+let folder, browser, page;
 
 before(async () => {
   folder = mkdtempSync(join(tmpdir(), 'snell-jupyterlab-'));
   const cells = CELLS.map((source, i) => ({ cell_type: 'code', id: `cell${i}`, metadata: {}, source, outputs: [], execution_count: null }));
   const kernelspec = { name: 'python3', display_name: 'Python 3', language: 'python' };
   writeFileSync(join(folder, 'lecture.ipynb'), JSON.stringify({ cells, metadata: { kernelspec }, nbformat: 4, nbformat_minor: 5 }));
-  // Drawn without a graphics card, so that pictures are much the same on all machines.
-  const args = ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'];
-  browser = await chromium.launch({ executablePath: '/usr/bin/chromium', args });
+  browser = await launch();
 }, PATIENCE);
 
 after(async () => {
   await browser?.close();
-  await stop(server);
+  await server.stop();
   rmSync(folder, { recursive: true, force: true });
 });
 
 test('a slider renders the scene anew while it moves', PATIENCE, async () => {
-  await start();
-  await page.evaluate(() => jupyterapp.commands.execute('notebook:run-all-cells'));
-  assert.deepEqual(await page.locator('[data-mime-type="application/vnd.jupyter.error"]').allInnerTexts(), []);
+  await open();
+  await runAll(page);
   const picture = output(0).locator('img');
   await picture.waitFor(PATIENCE);
   const handle = output(0).locator('.noUi-handle');
@@ -87,13 +76,13 @@ test('the view shows the scene, from a light as well, and the rays of a pixel th
 test('a saved notebook has its pictures without network and kernel', PATIENCE, async () => {
   // The view sends its still picture when it has been quiet for a moment.
   await page.waitForTimeout(2500);
-  await page.evaluate(() => jupyterapp.commands.execute('docmanager:save'));
+  await save(page);
   const saved = JSON.parse(readFileSync(join(folder, 'lecture.ipynb'), 'utf8'));
   const stills = saved.cells.map((cell) => cell.outputs.flatMap((o) => o.data?.['image/png'] ?? []).map((png) => png.trim()));
   assert.deepEqual(stills.map((pngs) => pngs.length), [1, 1], 'one picture in each cell');
-  await stop(server);
+  await server.stop();
   await page.context().close();
-  await start();
+  await open();
   for (const [cell, [png]] of stills.entries()) {
     const picture = output(cell).locator('img');
     await picture.waitFor(PATIENCE);
@@ -105,46 +94,10 @@ test('a saved notebook has its pictures without network and kernel', PATIENCE, a
   assert.deepEqual(trouble, []);
 });
 
-/** A server that nobody has set up but the one before, and a page of it with the notebook open. */
-async function start() {
-  const env = { ...process.env, HOME: join(folder, '.home'), JUPYTER_PREFER_ENV_PATH: '1' };
-  for (const name of ['JUPYTER_DATA_DIR', 'JUPYTER_CONFIG_DIR', 'JUPYTER_RUNTIME_DIR', 'IPYTHONDIR']) {
-    env[name] = join(folder, '.home', name);
-    mkdirSync(env[name], { recursive: true });
-  }
-  const options = ['--no-browser', '--LabApp.expose_app_in_browser=True', '--allow-root', '--ip=127.0.0.1', '--port=0', '--IdentityProvider.token=snell', `--notebook-dir=${folder}`];
-  server = spawn(python, ['-m', 'jupyterlab', ...options], { env });
-  const port = await new Promise((resolve, reject) => {
-    let said = '';
-    const hear = (text) => {
-      said += text;
-      const found = /127\.0\.0\.1:(\d+)\/lab/.exec(said);
-      if (found) resolve(found[1]);
-    };
-    server.stdout.on('data', hear);
-    server.stderr.on('data', hear);
-    server.on('error', reject);
-    server.on('exit', () => reject(new Error(`JupyterLab did not start:\n${said}`)));
-  });
-  const context = await browser.newContext({ viewport: { width: 1400, height: 1200 }, reducedMotion: 'reduce' });
-  // As without a network: nothing but the server can be reached, and nobody should try.
-  await context.route(/^https?:/, (route) => {
-    if (route.request().url().startsWith(`http://127.0.0.1:${port}/`)) return route.continue();
-    trouble.push(`request of ${route.request().url()}`);
-    return route.abort();
-  });
-  page = await context.newPage();
-  await page.goto(`http://127.0.0.1:${port}/lab/tree/lecture.ipynb?token=snell`);
-  await page.waitForFunction(() => window.jupyterapp?.shell.currentWidget?.sessionContext?.session?.kernel?.status === 'idle', null, PATIENCE);
-}
-
-async function stop(child) {
-  if (child === undefined || child.exitCode !== null) return;
-  const gone = new Promise((resolve) => child.once('exit', resolve));
-  child.kill('SIGTERM');
-  const kill = setTimeout(() => child.kill('SIGKILL'), 10_000);
-  await gone;
-  clearTimeout(kill);
+/** A new server, as the same person has it. */
+async function open() {
+  await server.start(folder, join(folder, '.home'));
+  page = await server.open(browser, 'lecture.ipynb', trouble);
 }
 
 function output(cell) {

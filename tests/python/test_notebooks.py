@@ -35,7 +35,7 @@ def test_runs(path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
     resources = {"metadata": {"path": str(FOLDER)}}
     client = NotebookClient(notebook, timeout=300, kernel_name="python3", resources=resources, coalesce_streams=True)
     client.execute()  # a cell that fails raises
-    assert shown(notebook) == kept, "run it again: jupyter execute --inplace"
+    assert shown(notebook) == kept, "run it again: make notebooks"
 
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
