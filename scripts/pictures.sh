@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Makes the pictures of the documentation anew: the models of light side by side, the gallery, the page that explains a pixel.
+# Makes the pictures of the documentation anew: the models of light side by side, the gallery, the page that explains a pixel, a
+# sweep. Those in notebooks, and that of one, are made by `make notebooks`.
 source "$(dirname "$0")/lib.sh"
 
 # 240 pixels high, in the scene's shape.
@@ -24,7 +25,18 @@ for scene in scenes/gallery/*.toml; do
 done
 need_node
 need_chromium
-[ -d viewer/node_modules ] || (cd viewer && npm ci --silent --no-audit --no-fund)
+need_viewer_packages
 mkdir -p out
 target/ci/snell explain lecture/default 190,300 --html out/why.html
 (cd viewer && node test/screenshot.mjs ../out/why.html ../docs/pictures/explain.png 'Refracted ray hits green')
+
+need_python_package
+target/python/bin/python - <<'PYTHON'
+import numpy as np
+import snell
+
+ball = snell.scenes["lecture/default"]
+frames = snell.sweep(ball, {"material.glass.eta": np.linspace(1, 2.5, 60)}, "out/sweep", width=320, spp=16)
+frames[::4].sheet("docs/pictures/sweep.png")
+frames.save("docs/pictures/sweep.gif")
+PYTHON
