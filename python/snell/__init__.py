@@ -13,14 +13,14 @@ from . import optics
 from ._native import __version__
 from .channels import Channels
 from .errors import OpticsError, PictureError, RenderError, SceneError, SnellError, SnellWarning
-from .frames import Sweep
-from .interact import Interactive, interact
+from .movie.frames import Sweep
+from .notebook.interact import Interactive, interact
+from .notebook.view import View
 from .parts import Box, Camera, Globe, Lathe, Light, Material, Mesh, Plane, Render, Sky, Sphere, Texture
 from .picture import Difference, Picture, Sightings
 from .scene import Scene, scenes
 from .sweep import sweep
 from .tree import Figure, Hit, LightThere, Local, Node, RayTree, Sample
-from .view import View
 
 __all__ = [
     "Box", "Camera", "Channels", "Difference", "Figure", "Globe", "Hit", "Interactive", "Lathe", "Light", "LightThere",

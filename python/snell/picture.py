@@ -19,7 +19,7 @@ from .progress import watcher
 from .tree import RayTree
 
 if TYPE_CHECKING:
-    from .view import View
+    from .notebook.view import View
 
 
 @dataclass(frozen=True, eq=False)
@@ -197,7 +197,7 @@ class Picture:
 
     def view(self, *, height: str = "34rem") -> View:
         """Show the scene in 3D, the picture in front of its camera: `snell.View`."""
-        from .view import View  # noqa: PLC0415 # a view has a picture, and a picture can be viewed
+        from .notebook.view import View  # noqa: PLC0415 # a view has a picture, and a picture can be viewed
 
         return View(self, height=height)
 

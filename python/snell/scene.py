@@ -20,7 +20,7 @@ from .progress import watcher
 from .values import Color, Value, plain
 
 if TYPE_CHECKING:
-    from .view import View
+    from .notebook.view import View
 
 _LISTS: Mapping[str, type[Value]] = {
     "light": Light, "sphere": Sphere, "mesh": Mesh, "plane": Plane, "box": Box, "lathe": Lathe,

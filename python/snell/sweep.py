@@ -9,11 +9,11 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from . import png
 from ._native import __version__
 from .errors import Finding, PictureError, SceneError
-from .files import replacing
-from .frames import Sweep
+from .movie import png
+from .movie.files import replacing
+from .movie.frames import Sweep
 from .progress import Note, Watch, watcher
 from .scene import Scene
 from .values import plain

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any
 from . import _native
 
 if TYPE_CHECKING:
+    from .notebook.view import View
     from .picture import Picture
-    from .view import View
 
 Numbers = tuple[float, float, float]
 
@@ -168,7 +168,7 @@ class RayTree:
 
     def view(self, *, height: str = "34rem") -> View:
         """Show its rays in the scene in 3D: `snell.View`."""
-        from .view import View  # noqa: PLC0415 # a view has a tree, and a tree can be viewed
+        from .notebook.view import View  # noqa: PLC0415 # a view has a tree, and a tree can be viewed
 
         return View(self._picture, self, height=height)
 

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 import snell
-from snell.view import View
+from snell.notebook.view import View
 
 SCENE = snell.scenes["lecture/default"]
 

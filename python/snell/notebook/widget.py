@@ -3,7 +3,7 @@
 import anywidget
 import traitlets
 
-from ._native import viewer_script
+from .._native import viewer_script
 
 
 class ViewWidget(anywidget.AnyWidget):

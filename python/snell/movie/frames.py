@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
+from ..errors import PictureError
 from . import png
-from .errors import PictureError
 from .files import replacing
 from .labels import labels
 

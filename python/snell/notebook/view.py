@@ -6,10 +6,10 @@ import json
 import sys
 from typing import Any
 
-from .errors import PictureError, SnellError
-from .notebook import INSTALL, Still, has_widgets, show
-from .picture import Picture
-from .tree import RayTree
+from ..errors import PictureError, SnellError
+from ..picture import Picture
+from ..tree import RayTree
+from .still import INSTALL, Still, has_widgets, show
 
 
 class View:
@@ -78,7 +78,7 @@ class View:
         if not has_widgets():
             print(f"The view in 3D needs: {INSTALL}", file=sys.stderr)
             return
-        from ._widget import ViewWidget  # noqa: PLC0415 # anywidget is an extra
+        from .widget import ViewWidget  # noqa: PLC0415 # anywidget is an extra
 
         if self._widget is None:
             self._widget = ViewWidget(

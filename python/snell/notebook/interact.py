@@ -12,11 +12,11 @@ from typing import Any
 
 import numpy as np
 
-from .errors import SceneError, SnellError
-from .notebook import INSTALL, Still, has_widgets, show
-from .picture import Picture
-from .scene import Scene
-from .values import plain
+from ..errors import SceneError, SnellError
+from ..picture import Picture
+from ..scene import Scene
+from ..values import plain
+from .still import INSTALL, Still, has_widgets, show
 
 #: Where a slider may go: lowest and highest, perhaps with a step; or a list to choose from; or False and True.
 Control = Sequence[Any]

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from .errors import PictureError
+from ..errors import PictureError
 
 
 @contextmanager

@@ -9,7 +9,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import BinaryIO
 
-from .errors import PictureError
+from ..errors import PictureError
 
 _SIGNATURE = b"\x89PNG\r\n\x1a\n"
 _ALIKE = (b"IHDR", b"PLTE", b"tRNS", b"gAMA", b"cHRM", b"sRGB", b"iCCP", b"cICP")  # what frames must share

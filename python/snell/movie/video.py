@@ -15,7 +15,7 @@ from av.filter.context import FilterContext
 from av.video.frame import PictureType
 from av.video.stream import VideoStream
 
-from .errors import PictureError
+from ..errors import PictureError
 
 _BT709, _16_TO_235 = 1, 1  # as HD television has its colours, which players assume
 _CONTAINER = {"mp4": {"movflags": "+faststart"}, "webp": {"loop": "0"}, "gif": {"loop": "0"}}

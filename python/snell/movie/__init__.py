@@ -1,0 +1,1 @@
+"""From the frames of a sweep to a contact sheet and movies."""
