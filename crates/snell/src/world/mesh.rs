@@ -57,6 +57,14 @@ impl Sides {
     }
 }
 
+/// The course's pictures are made with the plain mean.
+fn normal_weights(integrator: Integrator) -> NormalWeights {
+    match integrator {
+        Integrator::Whitted => NormalWeights::Angle,
+        Integrator::Lecture | Integrator::Course2018 | Integrator::Course2020 => NormalWeights::Equal,
+    }
+}
+
 impl World {
     pub(super) fn add_mesh(
         &mut self,
@@ -112,10 +120,7 @@ impl World {
             let help = "give it a material without texture, or a model file with texture coordinates".to_owned();
             return Err(refused((format!("`{name}` has no texture coordinates for its texture"), help)));
         }
-        let weights = match self.render.integrator {
-            Integrator::Whitted => NormalWeights::Angle,
-            _ => NormalWeights::Equal,
-        };
+        let weights = normal_weights(self.render.integrator);
         let corner_normals = (mesh.smooth_angle > 0.0).then(|| placed.smooth_normals(mesh.smooth_angle, weights));
         let is_model = !mesh.instances.is_empty();
         let (surfaces, triangles) = if is_model {
