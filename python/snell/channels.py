@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,11 +12,10 @@ from . import _native
 from .errors import PictureError
 from .progress import watcher
 
-if TYPE_CHECKING:
-    from .picture import Picture
+_LISTED = 30
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Channels:
     """What the rays of each pixel met; notebooks show it as four pictures. Of several samples the first one counts.
 
@@ -28,7 +26,7 @@ class Channels:
     normal : ndarray, (height, width, 3)
         The normal there, of unit length, towards the ray; zero where nothing is.
     object : ndarray of int, (height, width)
-        The number of the object in `names`; -1 where nothing is.
+        The number of the object in `names`; -1 where nothing is (which Python would take for the last one).
     names : list of str
         The objects.
     hits : ndarray of int, (height, width)
@@ -48,13 +46,15 @@ class Channels:
     normal: NDArray[np.float64]
     object: NDArray[np.int32]
     names: list[str]
-    _picture: Picture = field(repr=False)
+    # Not the picture: it knows its channels, and would never be freed.
+    _native: _native.NativePicture
+    _name: str
 
     @cached_property
     def hits(self) -> NDArray[np.uint32]:
         """Surfaces that all rays of the pixel met, those to lights apart."""
-        with watcher(True, self._picture.name) as watch:
-            return self._picture._native.hits(watch)
+        with watcher(True, self._name) as watch:
+            return self._native.hits(watch)
 
     def mask(self, name: str) -> NDArray[np.bool_]:
         """Return where the camera sees an object directly; `Scene.find` also knows mirrors and glass.
@@ -66,15 +66,20 @@ class Channels:
         """
         numbers = [number for number, known in enumerate(self.names) if known == name]
         if not numbers:
-            known = ", ".join(dict.fromkeys(self.names))
+            known = ", ".join(list(dict.fromkeys(self.names))[:_LISTED])
             raise PictureError([("mask", f"no object is called `{name}`", f"objects: {known}")])
         return np.isin(self.object, numbers)
 
+    def __repr__(self) -> str:
+        height, width = self.depth.shape
+        return f"<Channels of {self._name}, {width} x {height}>"
+
     def _repr_png_(self) -> bytes:
         seen = np.isfinite(self.depth)
-        near, far = (self.depth[seen].min(), self.depth[seen].max()) if seen.any() else (0.0, 1.0)
-        # Logarithms tell near things apart, however far the floor goes.
-        share = np.log1p(np.where(seen, self.depth, far) - near) / np.log1p(far - near or 1.0)
+        near, far = (self.depth[seen].min(), self.depth[seen].max()) if seen.any() else (1.0, 1.0)
+        # Logarithms tell near things apart, however far the floor goes, whatever the unit.
+        near = max(near, 1e-3 * far)
+        share = np.log(np.maximum(np.where(seen, self.depth, far), near) / near) / (np.log(far / near) or 1.0)
         depth = np.where(seen, 1 - 0.85 * share, 0)[..., None].repeat(3, axis=2)
         normal = np.where(seen[..., None], (self.normal + 1) / 2, 0)
         objects = np.where(seen[..., None], _hues(self.object), 0)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+import warnings
 from collections.abc import Sequence
 
 Finding = tuple["str | None", str, "str | None"]
@@ -62,3 +64,11 @@ class OpticsError(SnellError):
 
 class SnellWarning(UserWarning):
     """Something is probably not meant; the picture is made all the same."""
+
+
+def warn(message: str) -> None:
+    """Warn where someone has called this package, however deep in it the reason is."""
+    frame, level = sys._getframe(1), 2
+    while (caller := frame.f_back) is not None and caller.f_globals.get("__name__", "").split(".")[0] == "snell":
+        frame, level = caller, level + 1
+    warnings.warn(message, SnellWarning, stacklevel=level)

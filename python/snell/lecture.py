@@ -40,7 +40,10 @@ def vector(ring: type[float], degree: int, values: Iterable[float]) -> tuple[flo
     >>> vector(RR, 3, (0.2, 0.2, 0.2))
     (0.2, 0.2, 0.2)
     """
-    numbers = tuple(ring(value) for value in values)
+    try:
+        numbers = tuple(ring(value) for value in values)
+    except (TypeError, ValueError):
+        raise SceneError([("vector", f"expected {degree} numbers, read {values!r}", None)]) from None
     if len(numbers) != degree:
         raise SceneError([("vector", f"expected {degree} numbers, read {len(numbers)}", None)])
     return numbers
@@ -78,7 +81,8 @@ def _scene(variables: Mapping[str, Any]) -> Scene:
             raise SceneError([(names[0], "the cell does not set it", "run the lecture's cell first")])
         return variables[found]
 
-    objects = list(get("objs"))
+    objects = get("objs")
+    objects = list(objects) if isinstance(objects, Iterable) else [objects]
     if not all(isinstance(thing, Sphere | Mesh | Plane | Box | Lathe) for thing in objects):
         raise SceneError([("objs", "expected globes, meshes, planes, boxes and lathes", None)])
     return Scene(

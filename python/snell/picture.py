@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import operator
 import os
 from dataclasses import dataclass
 from functools import cached_property
@@ -17,6 +16,7 @@ from .channels import Channels
 from .errors import PictureError
 from .progress import watcher
 from .tree import RayTree
+from .values import whole
 
 if TYPE_CHECKING:
     from .notebook.view import View
@@ -156,7 +156,7 @@ class Picture:
         """
         if bits not in (8, 16):
             raise PictureError([("bits", f"expected 8 or 16, read {bits!r}", None)])
-        self._native.save(Path(path), bits, binary)
+        self._native.save(Path(path), int(bits), bool(binary))
 
     def diff(self, other: Picture | NDArray[np.floating[Any]]) -> Difference:
         """Compare with another picture, or an array of its shape.
@@ -167,6 +167,8 @@ class Picture:
             If they are of different shapes.
         """
         theirs = np.asarray(other.array if isinstance(other, Picture) else other)
+        if theirs.dtype.kind not in "buif":
+            raise PictureError([(None, f"expected a picture or an array of numbers, read {other!r}", None)])
         if theirs.shape != self.array.shape:
             raise PictureError([(None, f"an array of shape {theirs.shape} is none of {self.array.shape}", None)])
         array = self.array - theirs
@@ -182,7 +184,8 @@ class Picture:
             If it does not lie within.
         """
         left, top = self._native.region[:2]
-        numbers = [operator.index(number) for number in (left + x, top + y, width, height)]
+        x, y, width, height = (whole(number, "crop", PictureError) for number in (x, y, width, height))
+        numbers = (left + x, top + y, width, height)
         part = self._native.part(*numbers) if all(0 <= number < 2**32 for number in numbers) else None
         if part is None or x < 0 or y < 0:
             message = f"{width} x {height} pixels at ({x}, {y}) do not lie within {self.width} x {self.height}"
@@ -193,13 +196,13 @@ class Picture:
     def channels(self) -> Channels:
         """Depth, normals, objects, and how many surfaces each pixel takes; traced when they are first asked for."""
         with watcher(True, self.name) as watch:
-            return Channels(*self._native.channels(watch), self)
+            return Channels(*self._native.channels(watch), self._native, self.name)
 
-    def view(self, *, height: str = "34rem") -> View:
+    def view(self, *, css_height: str | None = None) -> View:
         """Show the scene in 3D, the picture in front of its camera: `snell.View`."""
         from .notebook.view import View  # noqa: PLC0415 # a view has a picture, and a picture can be viewed
 
-        return View(self, height=height)
+        return View(self, css_height=css_height)
 
     def explain(self, x: int, y: int) -> RayTree:
         """Say why a pixel has its colour.
@@ -214,11 +217,12 @@ class Picture:
         PictureError
             If there is no such pixel.
         """
+        x, y = (whole(number, "explain", PictureError) for number in (x, y))
         if not (0 <= x < self.width and 0 <= y < self.height):
             help = f"columns are 0 to {self.width - 1}, rows 0 to {self.height - 1}, from the top left"
             raise PictureError([("explain", f"there is no pixel {x},{y}", help)])
         left, top = self._native.region[:2]
-        tree = self._native.explain(left + operator.index(x), top + operator.index(y))
+        tree = self._native.explain(left + x, top + y)
         assert tree is not None, "the pixel is there"
         return RayTree(tree, self)
 

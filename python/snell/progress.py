@@ -10,6 +10,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any, Protocol
 
+from .notebook.still import in_notebook
+
 Watch = Callable[[int, int, int], object]
 #: What a bar says beside its share: of pixels, pixels in all, rays, and seconds.
 Note = Callable[[int, int, int, float], str]
@@ -115,8 +117,6 @@ def watcher(progress: bool | Watch, name: str, note: Note = rate) -> Iterator[Wa
 
 
 def _screen() -> _Screen | None:
-    ipython = sys.modules.get("IPython")  # in a notebook it is there; nothing is loaded for it
-    shell = ipython and ipython.get_ipython()
-    if ipython is not None and hasattr(shell, "kernel"):
-        return _Notebook(ipython.display)
+    if in_notebook():
+        return _Notebook(sys.modules["IPython"].display)
     return _Terminal() if sys.stderr is not None and sys.stderr.isatty() else None

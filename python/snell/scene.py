@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,7 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from . import _native
-from .errors import Finding, SceneError, SnellWarning
+from .errors import Finding, SceneError, warn
 from .parts import Box, Camera, Lathe, Light, Material, Mesh, Plane, Render, Sky, Sphere, Texture
 from .picture import Picture, Sightings
 from .progress import watcher
@@ -96,6 +95,8 @@ class Scene(Value):
         (50.0, 50.0, 100.0)
         """
         name = os.fspath(path)
+        if not isinstance(name, str):
+            raise SceneError([("path", f"expected a text or a path, read {path!r}", None)])
         text, arrays, folder = _native.read(name)
         return cls._of(text, arrays, str(folder), name)
 
@@ -130,6 +131,13 @@ class Scene(Value):
         self._check("camera", self.camera, Camera)
         if self.sky is not None:
             self._check("sky", self.sky, Sky)
+        for key in ("material", *_LISTS):
+            value = getattr(self, key)
+            if not isinstance(value, Sequence | Mapping) or isinstance(value, str):
+                raise SceneError([(key, f"expected a list, read {value!r}", None)])
+        for key in sorted(self.beside):
+            if not isinstance(getattr(self, key), str | os.PathLike):
+                raise SceneError([(key, f"expected a text, read {getattr(self, key)!r}", None)])
         materials = self._materials()
         table: dict[str, Any] = {"snell": 1, **super().plain()}
         table = {("render" if key == "settings" else key): value for key, value in table.items()}
@@ -208,7 +216,7 @@ class Scene(Value):
             If there is no such key.
         """
         said = json.dumps(plain(value, key))
-        text = _native.changed(self._text(), f"{key}={said}")
+        text = _native.changed(self._text(), key, said)
         return self._of(text, self._arrays(), self.folder, self.name)
 
     def _compiled(
@@ -217,7 +225,7 @@ class Scene(Value):
         table = self.plain()
         for key, setting in (("integrator", integrator), ("spp", spp)):
             if setting is not None:
-                table["render"][key] = setting
+                table["render"][key] = plain(setting, f"render.{key}")
         text = json.dumps(table)
         size = table["render"].get("size")
         if (width, height) != (None, None) and isinstance(size, list) and len(size) == 2:
@@ -268,16 +276,16 @@ class Scene(Value):
         how = {"width": width, "height": height, "integrator": integrator, "spp": spp}
         picture = self._rendered(set(), threads=threads, progress=progress, **how)
         if not picture.finished:
-            warnings.warn("stopped: the picture is what was done by then", SnellWarning, stacklevel=2)
+            warn("stopped: the picture is what was done by then")
         return picture
 
-    def view(self, *, height: str = "34rem", **how: Any) -> View:
+    def view(self, *, css_height: str | None = None, **how: Any) -> View:
         """Show the scene in 3D, in a notebook: objects, lights, the camera with its picture, and rays of pixels.
 
         Parameters
         ----------
-        height : str
-            Of the view, as CSS has it.
+        css_height : str, optional
+            Of the view, like ``"40rem"``.
         **how
             What `render` takes.
 
@@ -286,7 +294,7 @@ class Scene(Value):
         >>> Scene.load("gallery/ball").view(width=64)
         <View of gallery/ball, 64 x 43>
         """
-        return self.render(**how).view(height=height)
+        return self.render(**how).view(css_height=css_height)
 
     def _rendered(
         self,
@@ -296,16 +304,16 @@ class Scene(Value):
         progress: bool | Callable[[int, int, int], object] = True,
         **how: Any,
     ) -> Picture:
-        """Render, and warn the caller's caller of what is not known yet."""
-        if not (isinstance(threads, int) and 0 <= threads <= _MOST_THREADS):
+        """Render, and warn of what is not known yet."""
+        if not (isinstance(threads, int | np.integer) and 0 <= threads <= _MOST_THREADS):
             raise SceneError([("threads", f"expected 0 to {_MOST_THREADS}, read {threads!r}", None)])
         compiled = self._compiled(**how)
-        _warn(compiled.warnings(), known, stacklevel=4)
+        _warn(compiled.warnings(), known)
         with watcher(progress, self.name) as watch:
-            picture = Picture(compiled.render(threads, watch), self.name)
+            picture = Picture(compiled.render(int(threads), watch), self.name)
         # Lost light is nothing odd: every hall of mirrors has some.
         found = [text for code, text in picture._native.warnings() if code != _LOST_LIGHT]
-        _warn([(None, text, None) for text in found], known, stacklevel=4)
+        _warn([(None, text, None) for text in found], known)
         return picture
 
     def find(self, name: str, *, progress: bool | Callable[[int, int, int], object] = True) -> Sightings:
@@ -329,20 +337,22 @@ class Scene(Value):
         >>> found.paths[0]
         ('camera → glass(refract) → green', 12448)
         """
+        if not isinstance(name, str):
+            raise SceneError([("name", f"expected the name of an object, read {name!r}", None)])
         compiled = self._compiled()
-        _warn(compiled.warnings(), set(), stacklevel=3)
+        _warn(compiled.warnings(), set())
         with watcher(progress, self.name) as watch:
             paths, mask = compiled.find(name, watch)
         return Sightings(paths, mask)
 
 
-def _warn(findings: Sequence[Finding], known: set[Finding], stacklevel: int) -> None:
+def _warn(findings: Sequence[Finding], known: set[Finding]) -> None:
     """Warn of what is not known yet."""
     for finding in findings:
         if finding not in known:
             known.add(finding)
             place, message, _ = finding
-            warnings.warn(f"{place}: {message}" if place else message, SnellWarning, stacklevel=stacklevel)
+            warn(f"{place}: {message}" if place else message)
 
 
 def _material_name(reference: object, names: list[str], place: str) -> object:

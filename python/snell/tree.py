@@ -12,6 +12,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from . import _native
+from .errors import PictureError
+from .values import whole
 
 if TYPE_CHECKING:
     from .notebook.view import View
@@ -152,6 +154,10 @@ class RayTree:
 
     def text(self, *, top: int | None = None, depth: int | None = None) -> str:
         """Return the tree of the command line, with the strongest `top` branches and `depth` bounces."""
+        top, depth = (number and whole(number, "text", PictureError) for number in (top, depth))
+        for number in (top, depth):
+            if number is not None and not 0 <= number < 2**32:
+                raise PictureError([("text", f"expected a number from 0 to 4294967295, read {number}", None)])
         return self._native.text(top, depth, False)
 
     def to_json(self) -> str:
@@ -166,11 +172,11 @@ class RayTree:
         """Draw the strongest way: at each surface the normal, the rays with their angles, the critical angle."""
         return Figure(self._native.figure())
 
-    def view(self, *, height: str = "34rem") -> View:
+    def view(self, *, css_height: str | None = None) -> View:
         """Show its rays in the scene in 3D: `snell.View`."""
         from .notebook.view import View  # noqa: PLC0415 # a view has a tree, and a tree can be viewed
 
-        return View(self._picture, self, height=height)
+        return View(self._picture, self, css_height=css_height)
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write it as .html, .json, .svg, or else as text."""

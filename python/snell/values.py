@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import operator
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import MISSING, Field, fields
@@ -11,7 +12,10 @@ from typing import Any, ClassVar, TypeAlias, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from .errors import SceneError
+from .errors import SceneError, SnellError
+
+#: Of what may stand in a scene.
+LARGEST = 1e15
 
 V = TypeVar("V", bound="Value")
 Vector: TypeAlias = "Sequence[float] | NDArray[np.floating[Any]]"
@@ -88,6 +92,8 @@ def plain(value: Any, place: str) -> Any:
             return value.plain(place)
         case bool() | str():
             return value
+        case np.bool_():
+            return bool(value)
         case int() | np.integer():
             return int(value)
         case float() | np.floating():
@@ -108,6 +114,20 @@ def finite(number: float, place: str) -> float:
     if not math.isfinite(number):
         raise SceneError([(place, f"expected a number between -1e15 and 1e15, read {number}", None)])
     return number
+
+
+def whole(value: Any, place: str, error: type[SnellError]) -> int:
+    """Return a whole number.
+
+    Raises
+    ------
+    SnellError
+        Of the given kind, if it is none.
+    """
+    try:
+        return operator.index(value)
+    except TypeError:
+        raise error([(place, f"expected a whole number, read {value!r}", None)]) from None
 
 
 def gray(color: Any) -> Any:

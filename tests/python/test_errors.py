@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import threading
-from typing import Any
+from collections.abc import Callable
+from typing import Any, cast
 
 import numpy as np
 import pytest
 from test_scenes import TETRAHEDRON, small
 
 import snell
-from snell import Box, Camera, Light, Material, Mesh, Render, SceneError, Sphere
+from snell import Box, Camera, Light, Material, Mesh, Render, Scene, SceneError, Sphere
 
 NAN = float("nan")
 VERTICES, FACES = TETRAHEDRON
@@ -121,3 +122,34 @@ def test_a_scene_may_change_while_it_is_rendered() -> None:
     changed = scene.replace(ambient=0.3).render(width=256).array.tobytes()
     assert len(pictures) == 10
     assert set(pictures) <= {expected, changed}, "each picture is of one state"
+
+
+def test_arguments_of_another_kind_are_named() -> None:
+    scene, anything = snell.scenes["lecture/default"], cast(Any, object())
+    picture = scene.render(width=8)
+    tree = picture.explain(1, 1)
+    told: list[tuple[type[snell.SnellError], str, Callable[[], object]]] = [
+        (snell.SceneError, "render.spp", lambda: scene.render(spp=anything)),
+        (snell.SceneError, "render.integrator", lambda: scene.render(integrator=anything)),
+        (snell.SceneError, "threads", lambda: scene.render(threads=anything)),
+        (snell.SceneError, "light", lambda: scene.replace(light=None).render()),
+        (snell.SceneError, "sphere", lambda: scene.replace(sphere=3).render()),
+        (snell.SceneError, "material", lambda: scene.replace(material="glass").render()),
+        (snell.SceneError, "folder", lambda: scene.replace(folder=3).render()),
+        (snell.SceneError, "name", lambda: scene.find(anything)),
+        (snell.SceneError, "path", lambda: Scene.load(cast(Any, b"a"))),
+        (snell.SceneError, "material.glass.eta", lambda: scene.with_("material.glass.eta", "a")),
+        (snell.SceneError, "material.glas.eta", lambda: scene.with_("material.glas.eta", 2)),
+        (snell.PictureError, "explain", lambda: picture.explain(cast(Any, 1.5), 1)),
+        (snell.PictureError, "explain", lambda: picture.explain(anything, 1)),
+        (snell.PictureError, "crop", lambda: picture.crop(0, 0, cast(Any, 2.0), 2)),
+        (snell.PictureError, "text", lambda: tree.text(top=-1)),
+        (snell.PictureError, "text", lambda: tree.text(depth=2**40)),
+    ]
+    for error, place, act in told:
+        with pytest.raises(error) as caught:
+            act()
+        assert caught.value.place == place
+    eight, two = cast(Any, np.int64(8)), cast(Any, np.int64(2))
+    numbers = scene.render(width=eight, spp=two, threads=two)
+    assert numbers.array.tobytes() == scene.render(width=8, spp=2).array.tobytes()

@@ -6,6 +6,7 @@ import json
 from typing import Any
 
 import pytest
+from IPython.core.interactiveshell import InteractiveShell
 
 import snell
 from snell.notebook.view import View
@@ -50,12 +51,28 @@ def test_all_kinds_of_controls() -> None:
         ({"eta": ("a", "b")}, "read ('a', 'b')"),
         ({"kd": (0.0, 1.0)}, "several keys end with it: material.glass.kd, material.red.kd"),
         ({"etaa": (1.0, 2.0)}, "did you mean eta"),
+        ({"eta_outside": (-1e308, 1e308)}, "expected a low number"),
+        ({"eta_outside": (1.0, 10**400)}, "expected a low number"),
     ],
 )
 def test_odd_controls_are_named(control: dict[str, Any], said: str) -> None:
     with pytest.raises(snell.SceneError) as caught:
         snell.interact(SCENE, **control)
     assert said in str(caught.value)
+
+
+def test_what_is_no_scene_or_has_no_such_index_is_said() -> None:
+    odd: list[Any] = ["lecture/default", None, SCENE.render(width=8)]
+    for scene in odd:
+        with pytest.raises(snell.SceneError, match="expected a Scene"):
+            snell.interact(scene, eta=(1.0, 2.0))
+    keys: Any = ["eta"]
+    with pytest.raises(snell.SceneError, match="expected keys with their values"):
+        snell.interact(SCENE, keys)
+    opaque = SCENE.with_("material.glass.ko", 1.0)
+    for scene in (opaque, snell.scenes["gallery/prism"]):  # glass by name has no index of its own
+        with pytest.raises(snell.SceneError, match="no material is transparent and has an index of its own"):
+            snell.interact(scene, eta=(1.0, 2.0), width=8)
 
 
 def test_a_value_that_cannot_be_drawn_changes_nothing() -> None:
@@ -68,6 +85,85 @@ def test_a_value_that_cannot_be_drawn_changes_nothing() -> None:
         ball.set("eta", 2)
 
 
+class Kernel:
+    """What displays messages in a notebook: here they are written down, and nothing is shown."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.shown: list[tuple[str, bool]] = []
+        make: Any = InteractiveShell
+        shell = make()
+        shell.kernel = None  # it is what a notebook has and a terminal has not
+        monkeypatch.setattr(InteractiveShell, "_instance", shell)
+        monkeypatch.setattr(InteractiveShell, "initialized", classmethod(lambda cls: True))
+        monkeypatch.setattr(InteractiveShell, "instance", classmethod(lambda cls: shell))
+        monkeypatch.setattr("IPython.get_ipython", lambda: shell)
+        shell.display_pub = self
+
+    def publish(self, data: dict[str, Any], *_: Any, update: bool = False, **__: Any) -> None:
+        kinds = ("image/png", "application/vnd.jupyter.widget-view+json", "text/plain")
+        self.shown.append((next(kind for kind in kinds if kind in data).split("/")[1].split(".")[-1], update))
+
+    def take(self) -> list[tuple[str, bool]]:
+        shown, self.shown = self.shown, []
+        return shown
+
+
+PICTURE, WIDGET, CHANGED = ("png", False), ("widget-view+json", False), ("png", True)
+
+
+def test_each_cell_that_shows_sliders_has_its_picture(monkeypatch: pytest.MonkeyPatch) -> None:
+    kernel = Kernel(monkeypatch)
+    ball = snell.interact(SCENE, {"render.size": [[8, 8], [16, 16]]}, eta=(1.0, 4.0))
+    ball._ipython_display_()
+    assert kernel.take() == [PICTURE, WIDGET]
+    ball._ipython_display_()
+    assert kernel.take() == [PICTURE, WIDGET]
+    # From Python: both pictures, once, and the slider moves.
+    ball.set("material.glass.eta", 3.0)
+    assert kernel.take() == [CHANGED, CHANGED]
+    slider = ball._widgets["material.glass.eta"]
+    assert slider.value == 3.0
+    # From the front end, and what cannot be drawn.
+    slider.value = 2.5
+    assert kernel.take() == [CHANGED, CHANGED]
+    assert ball.scene == SCENE.with_("material.glass.eta", 2.5).with_("render.size", [8, 8])
+    assert "million rays" in ball._says.value
+    ball._widgets["render.size"].value = [16, 16]
+    assert (ball.picture.width, kernel.take()) == (16, [CHANGED, CHANGED])
+
+
+def test_each_cell_that_shows_a_view_has_its_still(monkeypatch: pytest.MonkeyPatch) -> None:
+    kernel = Kernel(monkeypatch)
+    view = SCENE.view(width=16, height=12, css_height="20rem")
+    assert view.picture.height == 12
+    for _ in range(2):
+        view._ipython_display_()
+        assert kernel.take() == [PICTURE, WIDGET]
+    view._hear(view._widget, {"kind": "still"}, [memoryview(view.picture._repr_png_())])
+    assert kernel.take() == [CHANGED, CHANGED]
+
+
+def test_without_a_front_end_it_is_said_in_a_line(capsys: pytest.CaptureFixture[str]) -> None:
+    SCENE.view(width=8)._ipython_display_()
+    snell.interact(SCENE, eta=(1.0, 2.0), width=8)._ipython_display_()
+    said = "<View of lecture/default, 8 x 8>\n<Interactive material.glass.eta=2.0>\n"
+    assert capsys.readouterr().out == said
+
+
+def test_sliders_start_where_the_scene_is() -> None:
+    controls = {"light.1.color": (0.0, 1.0), "sphere.1.radius": (1, 20), "material.glass.eta": (1, 3)}
+    ball = snell.interact(SCENE.with_("material.glass.eta", 1.5), controls, width=8)
+    assert ball.values == {"light.1.color": 0.75, "sphere.1.radius": 9, "material.glass.eta": 1.5}
+
+
+def test_changing_the_scene_afterwards_changes_no_slider() -> None:
+    scene = SCENE.replace()
+    ball = snell.interact(scene, eta=(1.0, 4.0), width=8)
+    scene.eta_outside = 3.0
+    ball.set("material.glass.eta", 1.5)
+    assert ball.scene == SCENE.with_("material.glass.eta", 1.5)
+
+
 def test_a_view_explains_pixels() -> None:
     picture = SCENE.render(width=64)
     view = picture.view()
@@ -76,6 +172,13 @@ def test_a_view_explains_pixels() -> None:
     assert picture.explain(24, 37).view().tree is not None
     with pytest.raises(snell.PictureError, match="only a whole picture"):
         picture.crop(0, 0, 8, 8).view()
+    other: list[Any] = ["x", SCENE.render(width=64).explain(1, 1)]
+    for tree in other:
+        with pytest.raises(snell.PictureError, match="expected a tree of this picture"):
+            view.tree = tree
+    height: Any = 300
+    with pytest.raises(snell.PictureError, match="expected a length"):
+        picture.view(css_height=height)
 
 
 class FrontEnd:
@@ -101,9 +204,16 @@ def test_a_view_answers_clicks_and_survives_nonsense() -> None:
     view._hear(widget, {"kind": "explain", "pixel": [64, 0]}, [])
     assert widget.sent[-1]["kind"] == "error"
     assert "there is no pixel 64,0" in widget.sent[-1]["message"]
-    odd: list[Any] = [None, {}, [], {"kind": "explain"}, {"kind": "explain", "pixel": "a"}, {"kind": "still"}]
-    for nonsense in odd:
-        view._hear(widget, nonsense, [])
+    nothing: list[Any] = [None, {}, [], {"kind": "still"}]
+    for unknown in nothing:
+        view._hear(widget, unknown, [])
+    # Whoever asks for a pixel waits for an answer.
+    for pixel in (None, "a", [1.5, 2], ["a", 0], [10**40, 0], [1]):
+        widget.sent.clear()
+        view._hear(widget, {"kind": "explain", "pixel": pixel}, [])
+        assert [message["kind"] for message in widget.sent] == ["error"]
+    for buffer in ("x", None, 5, b"no png"):
+        view._hear(widget, {"kind": "still"}, [buffer])
     assert widget.tree["pixel"] == [24, 37]
 
 

@@ -8,6 +8,7 @@ import resource
 import struct
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -61,6 +62,8 @@ def test_many_renders_do_not_grow() -> None:
     before = resident()
     for _ in range(1000):
         scene.render(width=128).explain(1, 1)
+    for _ in range(100):
+        assert scene.render(width=128).channels.names
     # Films that are kept would be 400 MB; an allocator may hold some pages.
     assert resident() - before < 8e6
 
@@ -237,6 +240,11 @@ def test_progress_is_told_and_may_fail() -> None:
     with pytest.raises(RuntimeError, match="enough"):
         scene.render(width=2000, spp=64, progress=fail)
 
+    # Whoever counts is told the end, however short it was.
+    told.clear()
+    scene.render(width=8, spp=1, progress=lambda *done: told.append(done))
+    assert told[-1][0] == told[-1][1] > 0
+
 
 def test_the_readme_is_right(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
@@ -250,6 +258,13 @@ def test_the_readme_is_right(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
 
 def test_odd_scenes_warn() -> None:
     scene = snell.scenes["lecture/default"].with_("material.glass.dyed", True)
-    with pytest.warns(snell.SnellWarning, match="W006"):
-        scene.render(width=8)
-    assert isinstance(scene, Scene)
+    draw: list[Callable[[], object]] = [
+        lambda: scene.render(width=8),
+        lambda: scene.view(width=8),
+        lambda: snell.interact(scene, eta=(1.0, 2.0), width=8),
+        lambda: scene.find("green"),
+    ]
+    for act in draw:
+        with pytest.warns(snell.SnellWarning, match="W006") as caught:
+            act()
+        assert [Path(warning.filename).name for warning in caught] == ["test_pictures.py"]

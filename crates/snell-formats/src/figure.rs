@@ -9,6 +9,9 @@ use std::fmt::Write;
 const COLUMNS: usize = 3;
 const WIDTH: f64 = 320.0;
 const HEIGHT: f64 = 340.0;
+/// Width of the title, and letters of a name, at most.
+const TITLE: f64 = 480.0;
+const LONGEST: usize = 34;
 /// More surfaces than this are left out.
 const MOST: usize = 9;
 /// Length of the rays that are drawn, and where they meet the surface.
@@ -29,18 +32,25 @@ pub fn figure(explanation: &Explanation) -> String {
     }
     way.reverse();
     let panels: Vec<String> = way.iter().filter_map(|(nodes, node)| panel(nodes, node)).take(MOST).collect();
-    let (columns, rows) = (panels.len().clamp(1, COLUMNS), panels.len().div_ceil(COLUMNS).max(1));
+    let (columns, rows) = (panels.len().min(COLUMNS), panels.len().div_ceil(COLUMNS));
     let [x, y] = explanation.pixel;
     let [r, g, b] = bytes(explanation.color, explanation.transfer);
-    let (width, height) = (WIDTH * columns as f64, HEIGHT * rows as f64 + 44.0);
+    // The title needs some room even where there is no panel below it.
+    let (width, height) = ((WIDTH * columns as f64).max(TITLE), HEIGHT * rows as f64 + 44.0);
+    let dark = strongest.is_none_or(|(_, node)| node.contribution == [0.0; 3]);
+    let what = match (panels.is_empty(), dark) {
+        (true, _) => "its ray meets nothing",
+        (false, true) => "no light comes along its ways; one of them",
+        (false, false) => "along its strongest way",
+    };
     let mut svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" \
          font-family=\"system-ui, sans-serif\" font-size=\"13\">\n<title>{}</title>\n\
          <rect width=\"100%\" height=\"100%\" fill=\"#fbfaf8\"/>\n\
          <rect x=\"16\" y=\"14\" width=\"20\" height=\"20\" fill=\"rgb({r},{g},{b})\" stroke=\"#0003\"/>\n\
-         <text x=\"44\" y=\"29\" fill=\"#222\">{}, pixel {x},{y}: along its strongest way</text>\n",
+         <text x=\"44\" y=\"29\" fill=\"#222\">{}, pixel {x},{y}: {what}</text>\n",
         plain(&explanation.sentence),
-        plain(&explanation.scene),
+        plain(&shortened(&explanation.scene)),
     );
     for (number, panel) in panels.iter().enumerate() {
         let (left, top) = ((number % COLUMNS) as f64 * WIDTH, (number / COLUMNS) as f64 * HEIGHT + 44.0);
@@ -76,7 +86,11 @@ fn panel(nodes: &[ExplainedNode], node: &ExplainedNode) -> Option<String> {
         cy - 118.0,
         cy + 118.0
     );
-    let _ = writeln!(svg, "<text x=\"16\" y=\"24\" fill=\"#222\" font-weight=\"600\">{}</text>", plain(&hit.object));
+    let _ = writeln!(
+        svg,
+        "<text x=\"16\" y=\"24\" fill=\"#222\" font-weight=\"600\">{}</text>",
+        plain(&shortened(&hit.object))
+    );
     let _ = writeln!(svg, "<text x=\"16\" y=\"{}\" fill=\"#567\">n = {:.4}</text>", cy - 8.0, hit.eta_before);
     if hit.eta_behind != hit.eta_before {
         let _ = writeln!(svg, "<text x=\"16\" y=\"{}\" fill=\"#567\">n = {:.4}</text>", cy + 18.0, hit.eta_behind);
@@ -146,6 +160,17 @@ fn caption(svg: &mut String, y: f64, color: &str, text: &str) {
     let _ = writeln!(svg, "<text x=\"16\" y=\"{y}\" fill=\"{color}\">{text}</text>");
 }
 
+/// A name that fits into a panel.
+fn shortened(name: &str) -> String {
+    if name.chars().count() <= LONGEST {
+        name.to_owned()
+    } else {
+        name.chars().take(LONGEST - 1).chain(['…']).collect()
+    }
+}
+
+/// As XML has it, which knows no control characters.
 fn plain(text: &str) -> String {
+    let text: String = text.chars().filter(|c| !c.is_control()).collect();
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }

@@ -94,11 +94,10 @@ fn read(py: Python<'_>, name: String) -> PyResult<(String, Arrays<'_>, PathBuf)>
 
 /// A scene with one value changed, as `--set` does.
 #[pyfunction]
-fn changed(py: Python<'_>, text: String, change: String) -> PyResult<String> {
-    let source = Source::new(OURS, text);
-    let scene = scene_file::set(&source, Syntax::Json, &change)
+fn changed(py: Python<'_>, text: String, key: String, value: String) -> PyResult<String> {
+    let scene = scene_file::set(&Source::new(OURS, text), Syntax::Json, &format!("{key}={value}"))
         .and_then(|source| scene_file::parse(&source, Syntax::Toml))
-        .map_err(|report| failed(py, &[report], Some(&source)))?;
+        .map_err(|report| raise(py, "SceneError", vec![(Some(key), report.message, report.help)]))?;
     hand_over(py, scene).map(|(text, _)| text)
 }
 

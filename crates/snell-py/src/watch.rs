@@ -29,13 +29,11 @@ pub fn watched<T: Send>(
         rays.fetch_max(done.rays, Ordering::Relaxed);
     };
     let options = Options { threads, crop, progress: Some(&count), cancel: Some(&cancel), ..Options::default() };
-    let look = || {
-        Python::attach(|py| {
-            py.check_signals()?;
-            let seen = (pixels.load(Ordering::Relaxed), width * height, rays.load(Ordering::Relaxed));
-            progress.map_or(Ok(()), |progress| progress.call1(py, seen).map(drop))
-        })
+    let tell = |py: Python<'_>| {
+        let seen = (pixels.load(Ordering::Relaxed), width * height, rays.load(Ordering::Relaxed));
+        progress.map_or(Ok(()), |progress| progress.call1(py, seen).map(drop))
     };
+    let look = || Python::attach(|py| py.check_signals().and_then(|()| tell(py)));
     py.detach(|| {
         std::thread::scope(|scope| {
             let (over, is_over) = channel::<()>();
@@ -53,7 +51,12 @@ pub fn watched<T: Send>(
                     stopped = Some(error);
                 }
             }
-            match worker.join() {
+            let result = worker.join();
+            if stopped.is_none() {
+                // So that whoever counts knows that it is over.
+                stopped = Python::attach(|py| tell(py).err());
+            }
+            match result {
                 Ok(result) => (result, stopped),
                 Err(panic) => std::panic::resume_unwind(panic),
             }

@@ -1,4 +1,4 @@
-"""Notebooks: are the packages for widgets there, and how a picture is shown that can change and is kept."""
+"""Is this a notebook, are the packages for widgets there; and a picture that can change, which a notebook keeps."""
 
 from __future__ import annotations
 
@@ -11,6 +11,12 @@ from typing import Any
 INSTALL = "pip install 'snell[notebook]'"
 
 
+def in_notebook() -> bool:
+    """Does a front end show what is displayed? IPython on a terminal has none; nothing is loaded to find out."""
+    ipython = sys.modules.get("IPython")
+    return ipython is not None and hasattr(ipython.get_ipython(), "kernel")
+
+
 def has_widgets() -> bool:
     """Are the packages there that sliders and the view in 3D need?"""
     return importlib.util.find_spec("anywidget") is not None
@@ -20,7 +26,7 @@ def show(widget: Any, otherwise: str) -> None:
     """Show a widget; `otherwise` is what stands there where it is only read."""
     bundle = widget._repr_mimebundle_()
     data = bundle[0] if isinstance(bundle, tuple) else bundle
-    sys.modules["IPython"].display.display({**data, "text/plain": otherwise}, raw=True)
+    _display({**data, "text/plain": otherwise}, raw=True)
 
 
 class Still:
@@ -33,6 +39,13 @@ class Still:
         """Show a picture, in place of the one before."""
         bundle = {"image/png": b64encode(png).decode("ascii"), "text/plain": "<picture>"}
         if self._handle is None:
-            self._handle = sys.modules["IPython"].display.display(bundle, raw=True, display_id=True)
+            self._handle = _display(bundle, raw=True, display_id=True)
         else:
             self._handle.update(bundle, raw=True)
+
+
+def _display(data: dict[str, Any], **how: Any) -> Any:
+    import IPython.display  # noqa: PLC0415 # only where there is a notebook
+
+    display: Any = IPython.display.display
+    return display(data, **how)

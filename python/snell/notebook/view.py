@@ -9,7 +9,9 @@ from typing import Any
 from ..errors import PictureError, SnellError
 from ..picture import Picture
 from ..tree import RayTree
-from .still import INSTALL, Still, has_widgets, show
+from .still import INSTALL, Still, has_widgets, in_notebook, show
+
+_CSS_HEIGHT = "34rem"
 
 
 class View:
@@ -24,8 +26,8 @@ class View:
         A whole one; `Scene.view`, `Picture.view` and `RayTree.view` supply it.
     tree : RayTree, optional
         Whose rays are drawn.
-    height : str
-        As CSS has it.
+    css_height : str, optional
+        Like ``"40rem"``.
 
     Attributes
     ----------
@@ -36,7 +38,7 @@ class View:
     Raises
     ------
     PictureError
-        If the picture is a part of one.
+        If the picture is a part of one, or the height no text.
 
     Examples
     --------
@@ -45,14 +47,21 @@ class View:
     <View of lecture/default, 64 x 64>
     """
 
-    def __init__(self, picture: Picture, tree: RayTree | None = None, *, height: str = "34rem") -> None:
+    def __init__(self, picture: Picture, tree: RayTree | None = None, *, css_height: str | None = None) -> None:
         if picture.region != (0, 0, *picture.full_size):
             raise PictureError([("view", "only a whole picture fits in front of the camera", "view it before crop")])
-        self.picture = picture
-        self._height = height
-        self._tree = tree
-        self._still: Still | None = None
+        if not isinstance(css_height, str | None):
+            raise PictureError([("css_height", f'expected a length like "40rem", read {css_height!r}', None)])
+        self._picture = picture
+        self._css_height = css_height or _CSS_HEIGHT
+        self._stills: list[Still] = []
         self._widget: Any = None
+        self.tree = tree
+
+    @property
+    def picture(self) -> Picture:
+        """What hangs in front of the camera."""
+        return self._picture
 
     @property
     def tree(self) -> RayTree | None:
@@ -61,6 +70,8 @@ class View:
 
     @tree.setter
     def tree(self, tree: RayTree | None) -> None:
+        if not isinstance(tree, RayTree | None) or (tree and tree._picture._native is not self.picture._native):
+            raise PictureError([("view.tree", f"expected a tree of this picture, read {tree!r}", None)])
         self._tree = tree
         if self._widget is not None:
             self._widget.tree = _plain(tree)
@@ -72,9 +83,12 @@ class View:
         return tree
 
     def _ipython_display_(self) -> None:
+        if not in_notebook():
+            print(repr(self))
+            return
         # First the still: where the widget answers it hides what stands before it.
-        self._still = Still()
-        self._still.show(self.picture._repr_png_())
+        self._stills.append(Still())
+        self._stills[-1].show(self.picture._repr_png_())
         if not has_widgets():
             print(f"The view in 3D needs: {INSTALL}", file=sys.stderr)
             return
@@ -86,7 +100,7 @@ class View:
                 picture=self.picture._repr_png_(),
                 tree=_plain(self.tree),
                 title=self.picture.name,
-                height=self._height,
+                height=self._css_height,
             )
             self._widget.on_msg(self._hear)
         show(self._widget, "(run the cell for the view in 3D)")
@@ -94,13 +108,18 @@ class View:
     def _hear(self, widget: Any, message: Any, buffers: list[Any]) -> None:
         """Answer the front end: a pixel was clicked on, or it has drawn something."""
         match message:
-            case {"kind": "explain", "pixel": [int(x), int(y)]}:
+            case {"kind": "explain", "pixel": [x, y]}:
                 try:
                     self.explain(x, y)
                 except SnellError as error:
                     widget.send({"kind": "error", "message": str(error)})
-            case {"kind": "still"} if buffers and self._still is not None:
-                self._still.show(bytes(buffers[0]))
+            case {"kind": "explain"}:
+                widget.send({"kind": "error", "message": f"expected a pixel, read {message.get('pixel')!r}"})
+            case {"kind": "still"} if buffers and isinstance(buffers[0], bytes | memoryview):
+                png = bytes(buffers[0])
+                if png.startswith(b"\x89PNG"):
+                    for still in self._stills:
+                        still.show(png)
 
     def __repr__(self) -> str:
         return f"<View of {self.picture.name}, {self.picture.width} x {self.picture.height}>"
