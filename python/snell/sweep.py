@@ -194,9 +194,10 @@ class _Contents:
         self._known: dict[Path, list[str]] = {}
 
     def of(self, table: Mapping[str, Any], folder: Path) -> list[list[str]]:
-        """Return digests of the files that a scene names, which none has that is not there: the renderer says so."""
+        """Return digests of the files that a scene names; what is not there, or no name, is left to the renderer."""
         named = [*table["mesh"], *table["texture"].values(), table.get("sky", {})]
-        return [self._digests(folder / entry[key]) for entry in named for key in ("file", "image") if key in entry]
+        names = [entry.get(key) for entry in named for key in ("file", "image")]
+        return [self._digests(folder / name) for name in names if isinstance(name, str)]
 
     def _digests(self, path: Path) -> list[str]:
         """Return those of a file and, if it is a model, of its libraries of materials."""

@@ -168,6 +168,9 @@ def test_files_of_each_frame(tmp_path: Path) -> None:
     (tmp_path / "b.png").unlink()
     with pytest.raises(snell.SceneError, match=r"b\.png"):
         snell.sweep(scene, skies, tmp_path / "frames")
+    wrong: Any = 3
+    with pytest.raises(snell.SceneError, match=r"sky\.image"):
+        snell.sweep(scene.replace(sky=snell.Sky(image=wrong)), {}, tmp_path / "frames")
 
 
 def test_the_same_in_other_words_is_the_same(tmp_path: Path) -> None:
