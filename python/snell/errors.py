@@ -68,7 +68,7 @@ class SnellWarning(UserWarning):
 
 def warn(message: str) -> None:
     """Warn where someone has called this package, however deep in it the reason is."""
-    frame, level = sys._getframe(1), 2
+    frame, level = sys._getframe(1), 3
     while (caller := frame.f_back) is not None and caller.f_globals.get("__name__", "").split(".")[0] == "snell":
         frame, level = caller, level + 1
     warnings.warn(message, SnellWarning, stacklevel=level)

@@ -5,20 +5,23 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import re
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
 from ._native import __version__
 from .errors import Finding, PictureError, SceneError
+from .files import replacing
 from .movie import png
-from .movie.files import replacing
 from .movie.frames import Sweep
 from .progress import Note, Watch, watcher
 from .scene import Scene
 from .values import plain
 
 _NOTES = "sweep.json"
+_HOW = ("width", "height", "integrator", "spp", "threads")  # what Scene.render takes
+_LIBRARY = re.compile(rb"^[ \t]*mtllib[ \t]+(.*\S)", re.MULTILINE)
 
 
 def sweep(
@@ -32,8 +35,8 @@ def sweep(
     """Render a frame for each step of some values, and skip what is done already.
 
     The folder remembers in ``sweep.json`` of what each frame was made: a sweep that was stopped goes on where it was,
-    one of a changed scene starts again, and a frame that is gone or damaged is rendered anew. ^C stops it, and raises
-    KeyboardInterrupt. What is odd is warned of once, not with each frame.
+    one of a changed scene, or of changed models and images, starts again, and a frame that is gone or damaged is
+    rendered anew. ^C stops it, and raises KeyboardInterrupt. What is odd is warned of once, not with each frame.
 
     Parameters
     ----------
@@ -56,7 +59,7 @@ def sweep(
     Raises
     ------
     SceneError
-        If the values are not of one length, or a scene is wrong.
+        If the values are not of one length, `Scene.render` takes no such keyword, or a scene is wrong.
     PictureError
         If a frame cannot be written.
 
@@ -69,6 +72,10 @@ def sweep(
     ['0000.png', '0001.png']
     >>> folder.cleanup()
     """
+    if not isinstance(values, Mapping):
+        message = f"expected a dict of keys, each with a list of values, read {values!r}"
+        raise SceneError([("values", message, 'like {"material.glass.eta": [1.0, 1.5]}')])
+    how = _keywords(how)
     columns = {key: _column(key, column) for key, column in values.items()}
     lengths = {len(column) for column in columns.values()}
     if len(lengths) > 1:
@@ -82,14 +89,12 @@ def sweep(
         return frame
 
     folder = Path(out)
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise PictureError([(str(folder), f"is no folder for frames: {error.strerror}", None)]) from error
     frames = tuple(folder / f"{index:04}.png" for index in range(lengths.pop() if lengths else 1))
+    triangles, contents = _triangles(scene), _Contents()
+    # A wrong value is found now, before there is a folder.
+    made_of = [_digest(changed(index), triangles, contents, how) for index in range(len(frames))]
+    _make(folder)
     notes = _read(folder / _NOTES)
-    triangles = _triangles(scene)
-    made_of = [_digest(changed(index), triangles, how) for index in range(len(frames))]  # a wrong value is found now
     missing = [
         index
         for index, frame in enumerate(frames)
@@ -114,11 +119,32 @@ def sweep(
     return Sweep(frames, columns)
 
 
+def _keywords(how: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what is said of how to render, in one form of all that mean the same."""
+    for key in how:
+        if key not in _HOW:
+            raise SceneError([(key, "Scene.render takes no such keyword", f"known are {', '.join(_HOW)}, progress")])
+    return {key: plain(how[key], key) for key in _HOW if how.get(key) is not None}
+
+
 def _column(key: str, column: Iterable[object]) -> list[Any]:
     """Return the values of a key as JSON has them."""
-    if isinstance(column, str | bytes | Mapping) or not isinstance(column, Iterable):
+    try:
+        each = None if isinstance(column, str | bytes | Mapping) else iter(column)
+    except TypeError:  # of an array without dimensions, too
+        each = None
+    if each is None:
         raise SceneError([(key, f"expected a list of values, one for each frame, read {column!r}", None)])
-    return [plain(value, f"{key}, frame {index}") for index, value in enumerate(column)]
+    return [plain(value, f"{key}, frame {index}") for index, value in enumerate(each)]
+
+
+def _make(folder: Path) -> None:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except (OSError, ValueError) as error:  # a NUL in a path is a ValueError
+        reason = getattr(error, "strerror", None) or error
+        place = str(folder).replace("\0", r"\0")
+        raise PictureError([(place, f"is no folder for frames: {reason}", None)]) from error
 
 
 def _within(watch: Watch, done: int, count: int, rays: int) -> Watch:
@@ -147,7 +173,7 @@ def _duration(seconds: float) -> str:
 def _read(path: Path) -> dict[str, str]:
     try:
         notes = json.loads(path.read_text())
-    except (OSError, ValueError):
+    except (OSError, ValueError, RecursionError):  # someone else's, however deep: no notes
         return {}
     return notes if isinstance(notes, dict) else {}
 
@@ -161,8 +187,39 @@ def _triangles(scene: Scene) -> str:
     return digest.hexdigest()
 
 
-def _digest(scene: Scene, triangles: str, how: Mapping[str, Any]) -> str:
-    """Return what decides the bits of a frame, but for the files of models."""
+class _Contents:
+    """What is in the files of models and images, each read once in a sweep."""
+
+    def __init__(self) -> None:
+        self._known: dict[Path, list[str]] = {}
+
+    def of(self, table: Mapping[str, Any], folder: Path) -> list[list[str]]:
+        """Return digests of the files that a scene names; what is not there, or no name, is left to the renderer."""
+        named = [*table["mesh"], *table["texture"].values(), table.get("sky", {})]
+        names = [entry.get(key) for entry in named for key in ("file", "image")]
+        return [self._digests(folder / name) for name in names if isinstance(name, str)]
+
+    def _digests(self, path: Path) -> list[str]:
+        """Return those of a file and, if it is a model, of its libraries of materials."""
+        if path not in self._known:
+            data = _bytes(path)
+            names = _LIBRARY.findall(data) if path.suffix.lower() == ".obj" else []
+            all_of_it = [data, *(_bytes(path.parent / os.fsdecode(name)) for name in names)]
+            self._known[path] = [hashlib.sha256(each).hexdigest() for each in all_of_it]
+        return self._known[path]
+
+
+def _bytes(path: Path) -> bytes:
+    try:
+        return path.read_bytes() if path.is_file() else b""
+    except (OSError, ValueError):
+        return b""
+
+
+def _digest(scene: Scene, triangles: str, contents: _Contents, how: Mapping[str, Any]) -> str:
+    """Return what decides the bits of a frame."""
+    table = scene.plain()
+    files = contents.of(table, Path(scene.folder))
     bits = {key: value for key, value in how.items() if key != "threads"}
-    said = json.dumps([__version__, scene.folder, scene.plain(), triangles, bits], default=str)
+    said = json.dumps([__version__, scene.folder, table, triangles, files, bits])
     return hashlib.sha256(said.encode()).hexdigest()

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from . import _native
 from .errors import PictureError
+from .files import ending, replacing
 from .values import whole
 
 if TYPE_CHECKING:
@@ -103,8 +104,16 @@ class Figure:
         self.svg = svg
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write it as .svg."""
-        Path(path).write_text(self.svg, encoding="utf-8")
+        """Write it as .svg.
+
+        Raises
+        ------
+        PictureError
+            If its name ends otherwise, or it cannot be written; what was there before stays.
+        """
+        ending(path, "figure", [".svg"])
+        with replacing(path) as beside:
+            beside.write_text(self.svg, encoding="utf-8")
 
     def _repr_svg_(self) -> str:
         return self.svg
@@ -179,10 +188,17 @@ class RayTree:
         return View(self._picture, self, css_height=css_height)
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write it as .html, .json, .svg, or else as text."""
-        target = Path(path)
+        """Write it as .html, .json, .svg, or else as text.
+
+        Raises
+        ------
+        PictureError
+            If it cannot be written; what was there before stays.
+        """
         forms = {".html": self.to_html, ".json": self.to_json, ".svg": self._native.figure}
-        target.write_text(forms.get(target.suffix, self.text)(), encoding="utf-8")
+        text = forms.get(Path(path).suffix.lower(), self.text)()
+        with replacing(path) as beside:
+            beside.write_text(text, encoding="utf-8")
 
     def __str__(self) -> str:
         return self.text()

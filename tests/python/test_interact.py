@@ -48,7 +48,7 @@ def test_all_kinds_of_controls() -> None:
         ({"eta": (1.0, 2.0, 0.0)}, "and a step above 0"),
         ({"eta": (1.0, float("nan"))}, "read nan"),
         ({"eta": []}, "read []"),
-        ({"eta": ("a", "b")}, "read ('a', 'b')"),
+        ({"eta": (None, 1)}, "read (None, 1)"),
         ({"kd": (0.0, 1.0)}, "several keys end with it: material.glass.kd, material.red.kd"),
         ({"etaa": (1.0, 2.0)}, "did you mean eta"),
         ({"eta_outside": (-1e308, 1e308)}, "expected a low number"),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+import zlib
 from fractions import Fraction
 from pathlib import Path
 
@@ -14,6 +15,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 import snell
+from snell.movie import png
 
 MOVIES = [".gif", ".png", ".apng", ".webp", ".mp4"]
 
@@ -79,6 +81,20 @@ def test_it_lasts_as_long_as_is_said(frames: snell.Sweep, ending: str, fps: floa
         assert all(abs(each - 1 / fps) <= step for each in seconds)
 
 
+@pytest.mark.parametrize("ending", [".png", ".webp", ".mp4"])
+def test_rates_of_television_are_exact(frames: snell.Sweep, ending: str, tmp_path: Path) -> None:
+    path = tmp_path / f"movie{ending}"
+    frames.save(path, fps=Fraction(30000, 1001))
+    if ending == ".png":
+        data = path.read_bytes()
+        delay = data[data.index(b"fcTL") + 24 :]
+        assert (int.from_bytes(delay[:2], "big"), int.from_bytes(delay[2:4], "big")) == (1001, 30000)
+    elif ending == ".mp4":
+        with av.open(str(path)) as file:
+            assert file.streams.video[0].average_rate == Fraction(30000, 1001)
+    assert len(decoded(path)) == 5
+
+
 @pytest.mark.parametrize("ending", MOVIES)
 def test_the_smallest_movie(ending: str, tmp_path: Path) -> None:
     frame = snell.sweep(snell.scenes["lecture/default"], {}, tmp_path / "frames", width=1)
@@ -125,15 +141,15 @@ def test_a_sheet_of_many_frames_is_a_selection(frames: snell.Sweep) -> None:
 
 
 def test_notebooks_show_a_sheet(frames: snell.Sweep, tmp_path: Path) -> None:
-    png = frames._repr_png_()
-    assert png is not None
-    assert png.startswith(b"\x89PNG")
+    shown = frames._repr_png_()
+    assert shown is not None
+    assert shown.startswith(b"\x89PNG")
     assert snell.Sweep((tmp_path / "gone.png",), {})._repr_png_() is None
 
 
 @pytest.mark.parametrize("ending", [*MOVIES, "sheet"])
 def test_a_failure_leaves_what_was_there(frames: snell.Sweep, ending: str, tmp_path: Path) -> None:
-    path = tmp_path / f"mine{ending}"
+    path = tmp_path / ("mine.png" if ending == "sheet" else f"mine{ending}")
     path.write_text("mine")
     damaged = tmp_path / "0004.png"
     damaged.write_bytes(frames[4].read_bytes()[:-200])
@@ -149,36 +165,102 @@ def test_a_failure_leaves_what_was_there(frames: snell.Sweep, ending: str, tmp_p
     assert sorted(path.name for path in tmp_path.iterdir()) == ["0004.png", path.name]
 
 
+@pytest.mark.parametrize("ending", MOVIES)
+def test_a_frame_that_goes_meanwhile_is_named(
+    frames: snell.Sweep, ending: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for wrong in (None, b"", frames[2].read_bytes()[:60]):
+        gone = tmp_path / "0002.png"
+        gone.write_bytes(frames[2].read_bytes())
+
+        def check(_: object, gone: Path = gone, wrong: bytes | None = wrong) -> None:
+            gone.unlink() if wrong is None else gone.write_bytes(wrong)
+
+        monkeypatch.setattr(png, "check_alike", check)
+        with pytest.raises(snell.PictureError, match="the same sweep again renders it anew") as error:
+            snell.Sweep((*frames[:2], gone, *frames[3:]), {}).save(tmp_path / f"movie{ending}")
+        assert error.value.place == str(gone)
+        assert [path for path in tmp_path.iterdir() if path != gone] == []
+
+
+def chunk(kind: bytes, content: bytes) -> bytes:
+    """Return a chunk of a PNG with its right checksum."""
+    return len(content).to_bytes(4, "big") + kind + content + zlib.crc32(kind + content).to_bytes(4, "big")
+
+
+@pytest.mark.parametrize("ending", [*MOVIES, "sheet"])
+def test_chunks_alone_are_no_picture(frames: snell.Sweep, ending: str, tmp_path: Path) -> None:
+    signature, end = frames[0].read_bytes()[:8], chunk(b"IEND", b"")
+    head, pixels = frames[0].read_bytes()[8:33], chunk(b"IDAT", zlib.compress(bytes(61 * (1 + 3 * 75))))
+    wrong = {
+        "end alone": end,
+        "no head": pixels + end,
+        "head later": pixels + head + end,
+        "short head": chunk(b"IHDR", bytes(4)) + pixels + end,
+        "no pixels": head + end,
+    }
+    for name, parts in wrong.items():
+        path = tmp_path / f"{name}.png"
+        path.write_bytes(signature + parts)
+        assert not png.is_whole(path), name
+        frame = snell.Sweep((path,), {})
+        with pytest.raises(snell.PictureError, match="the same sweep again renders it anew") as error:
+            frame.sheet() if ending == "sheet" else frame.save(tmp_path / f"movie{ending}")
+        assert error.value.place == str(path)
+    path = tmp_path / "right.png"
+    path.write_bytes(signature + head + pixels + end)
+    assert png.is_whole(path)
+
+
+def test_a_frame_is_not_written_over(frames: snell.Sweep, tmp_path: Path) -> None:
+    copy = tmp_path / "0000.png"
+    copy.write_bytes(frames[0].read_bytes())
+    (tmp_path / "link.png").symlink_to(copy)
+    mine = snell.Sweep((copy, *frames[1:]), {})
+    for path in (copy, tmp_path / "link.png"):
+        for write in (mine.save, mine.sheet):
+            with pytest.raises(snell.PictureError, match="is a frame of this very sweep"):
+                write(path)
+    assert copy.read_bytes() == frames[0].read_bytes()
+
+
 def test_what_cannot_be_saved_is_said(frames: snell.Sweep, tmp_path: Path) -> None:
     with pytest.raises(snell.PictureError, match=r"known are \.mp4, \.gif, \.webp, \.apng, \.png"):
         frames.save(tmp_path / "movie.mov")
     with pytest.raises(snell.PictureError, match="a GIF cannot be faster"):
         frames.save(tmp_path / "movie.gif", fps=60)
-    for fps in (0, -1, float("nan"), "fast"):
+    with pytest.raises(snell.PictureError, match=r"no sheet has this ending \(known is \.png\)"):
+        frames.sheet(tmp_path / "sheet.jpg")
+    for fps in (0, -1, float("nan"), "fast", True, np.bool_(True)):
         with pytest.raises(snell.PictureError, match=r"fps: expected 0\.1 to 240 frames per second"):
             frames.save(tmp_path / "movie.mp4", fps=fps)  # type: ignore[arg-type]
     with pytest.raises(snell.PictureError, match="there are no frames"):
         frames[:0].save(tmp_path / "movie.gif")
     with pytest.raises(snell.PictureError, match="at least 1"):
         frames.sheet(columns=0)
+    with pytest.raises(snell.PictureError, match="at least 1, read True"):
+        frames.sheet(columns=True)
+    with pytest.raises(TypeError, match="unhashable type: 'Sweep'"):
+        hash(frames)
     other = snell.sweep(snell.scenes["lecture/default"], {}, tmp_path / "other", width=32)
     with pytest.raises(snell.PictureError, match="has 32 x 32 pixels, the first frame has 75 x 61"):
         snell.Sweep((*frames, *other), {}).save(tmp_path / "movie.gif")
 
 
-def test_without_the_libraries_it_says_what_to_install(frames: snell.Sweep) -> None:
+@pytest.mark.parametrize(("module", "library"), [("av", "PyAV"), ("PIL", "Pillow")])
+def test_without_a_library_it_says_what_to_install(frames: snell.Sweep, module: str, library: str) -> None:
     script = f"""
 import sys
-sys.modules["av"] = sys.modules["PIL"] = None
+sys.modules[{module!r}] = None
 import snell
 from pathlib import Path
 frames = snell.Sweep((Path({str(frames[0])!r}),), {{}})
-assert frames._repr_png_() is None
-for make in (frames.sheet, lambda: frames.save("movie.gif")):
-    try:
-        make()
-    except snell.PictureError as error:
-        print(error.help)
+assert (frames._repr_png_() is None) == ({module!r} == "PIL")
+try:
+    frames.save("movie.gif") if {module!r} == "av" else frames.sheet()
+except snell.PictureError as error:
+    print(error)
 """
     done = subprocess.run([sys.executable, "-c", script], check=True, capture_output=True, text=True)
-    assert done.stdout == "pip install 'snell[movie]'\n" * 2
+    assert done.stdout.startswith(f"this needs {library}: ")
+    assert done.stdout.endswith("(pip install 'snell[movie]')\n")

@@ -119,3 +119,99 @@ def test_a_wrong_value_is_found_before_the_first_frame(tmp_path: Path) -> None:
     with pytest.raises(snell.PictureError, match="no folder"):
         snell.sweep(scene, {}, tmp_path / "file")
     assert (tmp_path / "file").read_text() == "mine"
+
+
+def made(frames: snell.Sweep) -> list[int]:
+    return [frame.stat().st_mtime_ns for frame in frames]
+
+
+def test_a_changed_file_is_a_changed_scene(tmp_path: Path) -> None:
+    model, library, image, sky = (tmp_path / name for name in ("a.obj", "a.mtl", "tiles.png", "sky.png"))
+    model.write_text("mtllib a.mtl\nv 40 40 30\nv 60 40 30\nv 50 60 30\nusemtl paint\nf 1 2 3\n")
+    library.write_text("newmtl paint\nKd 1 0 0\n")
+    for path in (image, sky):
+        Image.new("RGB", (2, 2), "#ff8000").save(path)
+    scene = snell.scenes["lecture/default"].replace(
+        settings=snell.Render("whitted", size=(16, 16)),
+        mesh=[snell.Mesh(file="a.obj")],
+        texture={"tiles": snell.Texture(image="tiles.png")},
+        sky=snell.Sky(image="sky.png"),
+        folder=str(tmp_path),
+    )
+    eta = {"material.glass.eta": [1, 1.5]}
+    frames = snell.sweep(scene, eta, tmp_path / "frames")
+    before = made(frames)
+    snell.sweep(scene, eta, tmp_path / "frames")
+    assert made(frames) == before
+    for path in (model, library, image, sky):
+        if path.suffix == ".png":
+            Image.new("RGB", (2, 2), "#0080ff").save(path)
+        else:
+            path.write_text(path.read_text().replace("60", "70").replace("1 0 0", "0 1 0"))
+        snell.sweep(scene, eta, tmp_path / "frames")
+        assert all(now > then for now, then in zip(made(frames), before, strict=True)), path
+        before = made(frames)
+
+
+def test_files_of_each_frame(tmp_path: Path) -> None:
+    for name in ("a.png", "b.png"):
+        Image.new("RGB", (2, 2), "#ff8000").save(tmp_path / name)
+    scene = snell.scenes["lecture/default"].replace(
+        settings=snell.Render("whitted", size=(16, 16)), sky=snell.Sky(image="a.png"), folder=str(tmp_path)
+    )
+    skies = {"sky.image": ["a.png", "b.png"]}
+    frames = snell.sweep(scene, skies, tmp_path / "frames")
+    before = made(frames)
+    Image.new("RGB", (2, 2), "#0080ff").save(tmp_path / "b.png")
+    snell.sweep(scene, skies, tmp_path / "frames")
+    assert [now == then for now, then in zip(made(frames), before, strict=True)] == [True, False]
+    (tmp_path / "b.png").unlink()
+    with pytest.raises(snell.SceneError, match=r"b\.png"):
+        snell.sweep(scene, skies, tmp_path / "frames")
+    wrong: Any = 3
+    with pytest.raises(snell.SceneError, match=r"sky\.image"):
+        snell.sweep(scene.replace(sky=snell.Sky(image=wrong)), {}, tmp_path / "frames")
+
+
+def test_the_same_in_other_words_is_the_same(tmp_path: Path) -> None:
+    scene = snell.scenes["lecture/default"]
+    eta = {"material.glass.eta": [1, 1.5]}
+    frames = snell.sweep(scene, eta, tmp_path, width=8, spp=2)
+    before = made(frames)
+    same: list[dict[str, Any]] = [
+        {"spp": 2, "width": 8},
+        {"width": np.int64(8), "spp": np.uint8(2)},
+        {"width": 8, "spp": 2, "height": None, "integrator": None, "threads": np.int64(1)},
+    ]
+    for how in same:
+        snell.sweep(scene, eta, tmp_path, **how)
+        assert made(frames) == before, how
+
+
+def test_what_is_no_sweep_is_said(tmp_path: Path) -> None:
+    scene = snell.scenes["lecture/default"]
+    wrong: Any
+    for wrong in (3, None, [1, 2]):
+        with pytest.raises(
+            snell.SceneError, match=r"values: expected a dict of keys, each with a list of values, read"
+        ):
+            snell.sweep(scene, wrong, tmp_path / "frames")
+    with pytest.raises(snell.SceneError, match=r"material\.glass\.eta: expected a list of values, one for each frame"):
+        snell.sweep(scene, {"material.glass.eta": np.array(1.5)}, tmp_path / "frames")
+    with pytest.raises(
+        snell.SceneError, match=r"colour: Scene\.render takes no such keyword \(known are width, height"
+    ):
+        snell.sweep(scene, {}, tmp_path / "frames", colour=1)
+    with pytest.raises(snell.SceneError, match="width: expected a number, a text or a list"):
+        snell.sweep(scene, {}, tmp_path / "frames", width=object())
+    with pytest.raises(snell.SceneError, match="known here: glass"):
+        snell.sweep(scene, {"material.gals.eta": [1]}, tmp_path / "frames")
+    assert not (tmp_path / "frames").exists()
+    with pytest.raises(snell.PictureError, match="is no folder for frames"):
+        snell.sweep(scene, {}, str(tmp_path / "fra\0mes"))
+
+
+def test_notes_of_someone_else_are_none(tmp_path: Path) -> None:
+    (tmp_path / "sweep.json").write_text("[" * 100_000)
+    frames = snell.sweep(snell.scenes["lecture/default"], {}, tmp_path, width=8)
+    assert len(frames) == 1

@@ -110,7 +110,9 @@ fn panel(nodes: &[ExplainedNode], node: &ExplainedNode) -> Option<String> {
     }
     let (x, y) = at(-hit.angle_in, RAY, -1.0);
     ray(&mut svg, (x, y), (cx, cy), "#3a4657");
-    label(&mut svg, at(-hit.angle_in - 16.0, 74.0, -1.0), &format!("{:.1}°", hit.angle_in));
+    // Beside the ray, away from the normal, unless it would lie on the surface.
+    let beside = |angle: f64| if angle < 55.0 { angle + 16.0 } else { angle - 16.0 };
+    label(&mut svg, at(-beside(hit.angle_in), 74.0, -1.0), &format!("{:.1}°", hit.angle_in));
     if mirrored > 0.0 {
         ray(&mut svg, (cx, cy), at(hit.angle_in, RAY, -1.0), "#b4573c");
         let name = if hit.total_reflection { "total reflection" } else { "mirrored" };
@@ -119,7 +121,7 @@ fn panel(nodes: &[ExplainedNode], node: &ExplainedNode) -> Option<String> {
     if refracted > 0.0 {
         let angle = hit.angle_out.unwrap_or(hit.angle_in);
         ray(&mut svg, (cx, cy), at(angle, RAY, 1.0), "#1d7a86");
-        label(&mut svg, at(angle + 16.0, 74.0, 1.0), &format!("{angle:.1}°"));
+        label(&mut svg, at(beside(angle), 74.0, 1.0), &format!("{angle:.1}°"));
         caption(&mut svg, HEIGHT - 14.0, "#1d7a86", &format!("goes through: {:.1} %", 100.0 * refracted));
     }
     Some(svg)

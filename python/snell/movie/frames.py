@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import io
+import numbers
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -14,8 +15,8 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 
 from ..errors import PictureError
+from ..files import ending, replacing
 from . import png
-from .files import replacing
 from .labels import labels
 
 if TYPE_CHECKING:
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
 _SLIDE, _CELL = 1920, 1280  # pixels across a sheet
 _SLOWEST, _FASTEST = 0.1, 240
 _FASTEST_GIF = 50  # browsers take a delay below 2/100 s for 1/10 s
+_NEEDS = {"sheet": "Pillow", "video": "PyAV"}
 #: Module and function that write a movie.
 _MOVIES = {
     ".mp4": ("video", "mp4"),
@@ -65,6 +67,8 @@ class Sweep(Sequence[Path]):
     frames: tuple[Path, ...]
     values: Mapping[str, list[Any]]
 
+    __hash__ = None  # type: ignore[assignment] # the values can be changed
+
     def __len__(self) -> int:
         return len(self.frames)
 
@@ -95,17 +99,22 @@ class Sweep(Sequence[Path]):
         Raises
         ------
         PictureError
-            If there are no frames, one cannot be read, the sheet cannot be written, or Pillow is not installed.
+            If there are no frames, one cannot be read, the sheet cannot be written (what was there before stays), its
+            name does not end in .png or is that of a frame, or Pillow is not installed.
         """
-        if not (columns is None or (isinstance(columns, int | np.integer) and columns > 0)):
+        number = isinstance(columns, int | np.integer) and not isinstance(columns, bool)
+        if not (columns is None or (number and columns > 0)):
             raise PictureError([("columns", f"expected a number of columns, at least 1, read {columns!r}", None)])
+        if path is not None:
+            ending(path, "sheet", [".png"])
+            self._check_no_frame(path)
         sheet = self._drawn(columns, _SLIDE)
         if path is not None:
             with replacing(path) as beside:
                 sheet.save(beside, "PNG", optimize=True)
         return sheet
 
-    def save(self, path: str | os.PathLike[str], *, fps: float = 20) -> None:
+    def save(self, path: str | os.PathLike[str], *, fps: float | Fraction = 20) -> None:
         """Write a movie: .mp4 (H.264), .gif, .webp or .apng (also .png); all but .mp4 repeat for ever.
 
         The pixels of WebP and APNG are those of the frames. GIF has 256 colours, and MP4 half the resolution in colour.
@@ -114,28 +123,28 @@ class Sweep(Sequence[Path]):
         ----------
         path : path
             Where to; its ending is the format.
-        fps : float
+        fps : float or Fraction
             Frames per second.
 
         Raises
         ------
         PictureError
             If there are no frames, they are not of one size, one cannot be read, the movie cannot be written (what was
-            there before stays), or PyAV is not installed.
+            there before stays), its name is that of a frame, or PyAV is not installed.
         """
-        place, ending = os.fspath(path), Path(path).suffix.lower()
-        if ending not in _MOVIES:
-            raise PictureError([(place, "no movie has this ending", f"known are {', '.join(_MOVIES)}")])
-        fastest = _FASTEST_GIF if ending == ".gif" else _FASTEST
-        if not (isinstance(fps, int | float | np.integer | np.floating) and _SLOWEST <= fps <= fastest):
+        form = ending(path, "movie", _MOVIES)
+        fastest = _FASTEST_GIF if form == ".gif" else _FASTEST
+        number = isinstance(fps, numbers.Real) and not isinstance(fps, bool)
+        if not (number and _SLOWEST <= fps <= fastest):
             message = f"expected {_SLOWEST} to {fastest} frames per second, read {fps!r}"
-            raise PictureError([("fps", message, "a GIF cannot be faster" if ending == ".gif" else None)])
+            raise PictureError([("fps", message, "a GIF cannot be faster" if form == ".gif" else None)])
+        self._check_no_frame(path)
         self._check_some()
         png.check_alike(self.frames)
-        module, function = _MOVIES[ending]
+        module, function = _MOVIES[form]
         write = getattr(_optional(module), function)
         with replacing(path) as beside:
-            write(self.frames, beside, Fraction(float(fps)).limit_denominator(250))  # APNG has 16 bits for each number
+            write(self.frames, beside, _rate(fps))
 
     def _drawn(self, columns: int | None, width: int) -> Image:
         self._check_some()
@@ -148,6 +157,12 @@ class Sweep(Sequence[Path]):
     def _check_some(self) -> None:
         if not self.frames:
             raise PictureError([(None, "there are no frames", None)])
+
+    def _check_no_frame(self, path: str | os.PathLike[str]) -> None:
+        """Check that a file to write is none of the frames, which would be lost."""
+        there = (frame for frame in self.frames if os.path.exists(path) and frame.exists())
+        if any(frame.samefile(path) for frame in there):
+            raise PictureError([(os.fspath(path), "is a frame of this very sweep", "choose another name")])
 
     def _repr_png_(self) -> bytes | None:
         try:
@@ -165,9 +180,15 @@ class Sweep(Sequence[Path]):
         return f"<Sweep of {len(self)} frame{'s' * (len(self) != 1)}{''.join(listed)}>"
 
 
+def _rate(fps: float | Fraction) -> Fraction:
+    """Return frames per second as two numbers of 16 bits, which APNG has; exactly, if that can be."""
+    rate = fps if isinstance(fps, Fraction) else Fraction(float(fps))
+    return rate if max(rate.numerator, rate.denominator) < 2**16 else rate.limit_denominator(250)
+
+
 def _optional(module: str) -> Any:
     """Load what needs a library that need not be there."""
     try:
         return importlib.import_module(f".{module}", __package__)
     except ImportError as error:
-        raise PictureError([(None, f"this needs Pillow and PyAV: {error}", "pip install 'snell[movie]'")]) from error
+        raise PictureError([(None, f"this needs {_NEEDS[module]}: {error}", "pip install 'snell[movie]'")]) from error

@@ -16,26 +16,31 @@ _ALIKE = (b"IHDR", b"PLTE", b"tRNS", b"gAMA", b"cHRM", b"sRGB", b"iCCP", b"cICP"
 
 
 def chunks(path: Path) -> Iterator[tuple[bytes, bytes]]:
-    """Give type and content of each chunk.
+    """Give type and content of each chunk, IHDR first.
 
     Raises
     ------
     PictureError
-        If the file cannot be read, is no PNG, is cut off, or has a chunk that does not match its checksum.
+        If the file cannot be read, is no PNG, is cut off, has no pixels, or a chunk does not match its checksum.
     """
     try:
         with path.open("rb") as file:
             size = path.stat().st_size
-            kind = b""
+            seen: set[bytes] = set()
             if file.read(8) != _SIGNATURE:
                 raise damaged(path, "is no PNG")
-            while kind != b"IEND":
+            while b"IEND" not in seen:
                 head = file.read(8)
                 length, kind = struct.unpack(">I4s", head) if len(head) == 8 else (size, b"")
                 content = file.read(length) if length < size else b""
                 if file.read(4) != _checksum(kind, content):
                     raise damaged(path, "is cut off or damaged")
+                if not seen and (kind, length) != (b"IHDR", 13):
+                    raise damaged(path, "does not begin with the size of a picture (IHDR)")
+                seen.add(kind)
                 yield kind, content
+            if b"IDAT" not in seen:
+                raise damaged(path, "has no pixels (IDAT)")
     except OSError as error:
         raise damaged(path, f"cannot be read: {error.strerror}") from error
 

@@ -16,6 +16,7 @@ from av.video.frame import PictureType
 from av.video.stream import VideoStream
 
 from ..errors import PictureError
+from .png import damaged
 
 _BT709, _16_TO_235 = 1, 1  # as HD television has its colours, which players assume
 _CONTAINER = {"mp4": {"movflags": "+faststart"}, "webp": {"loop": "0"}, "gif": {"loop": "0"}}
@@ -47,11 +48,18 @@ def mp4(frames: Sequence[Path], path: Path, fps: Fraction) -> None:
 
 def _read(frames: Sequence[Path], fps: Fraction) -> Iterator[av.VideoFrame]:
     for index, path in enumerate(frames):
-        with av.open(str(path), format="png_pipe") as file:
-            frame = _as(next(file.decode(video=0)), "rgb24")
+        frame = _decoded(path)
         frame.pts, frame.time_base = index, 1 / fps
         frame.pict_type = PictureType.NONE  # else each frame of a movie would be stored as whole as its PNG
         yield frame
+
+
+def _decoded(path: Path) -> av.VideoFrame:
+    try:
+        with av.open(str(path), format="png_pipe") as file:
+            return _as(next(file.decode(video=0)), "rgb24")
+    except (av.FFmpegError, StopIteration) as error:
+        raise damaged(path, f"cannot be read: {getattr(error, 'strerror', None) or 'it has no pixels'}") from error
 
 
 def _as(frame: av.VideoFrame, pixels: str) -> av.VideoFrame:
