@@ -2,6 +2,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
+use snell::geometry::mesh::NormalWeights;
 use snell_formats::Source;
 use snell_formats::model::{parse_mtl, parse_obj};
 
@@ -13,6 +14,8 @@ fuzz_target!(|text: &str| {
         assert!(mesh.faces.iter().flatten().all(|&v| (v as usize) < mesh.vertices.len()));
         assert_eq!(mesh.faces.len(), mesh.face_slots.len());
         assert!(mesh.face_slots.iter().all(|&slot| (slot as usize) < mesh.slots.len()));
-        mesh.smooth_normals(30.0);
+        for weights in [NormalWeights::Equal, NormalWeights::Angle] {
+            mesh.smooth_normals(30.0, weights);
+        }
     }
 });
