@@ -98,8 +98,9 @@ def _round_step(step: float) -> float:
 
 
 def _has_index(material: Any) -> bool:
+    ko = np.asarray(material.ko)  # not checked yet: it may be anything
     other = (material.glass, material.cauchy, material.sellmeier)
-    return bool(np.mean(material.ko) < 1) and all(said is None for said in other)
+    return ko.dtype.kind in "iuf" and bool(ko.mean() < 1) and all(said is None for said in other)
 
 
 def _leaves(scene: Scene) -> Iterator[tuple[str, Any]]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import sys
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -11,7 +10,7 @@ from ..errors import SceneError, SnellError
 from ..picture import Picture
 from ..scene import Scene
 from . import controls as control_of
-from .still import INSTALL, Still, has_widgets, in_notebook, show
+from .still import Still, open_cell, show
 
 #: Where a slider may go: lowest and highest, perhaps with a step; or a list to choose from; or False and True.
 Control = Sequence[Any]
@@ -68,7 +67,6 @@ def interact(
     if not (controls is None or (isinstance(controls, Mapping) and all(isinstance(key, str) for key in controls))):
         raise SceneError([("controls", f"expected keys with their values, read {controls!r}", None)])
     how: dict[str, Any] = {"width": width, "height": height, "integrator": integrator, "spp": spp}
-    scene._compiled(**how)  # what is wrong with the scene itself is said first
     by_name = {control_of.key_of(scene, name): control for name, control in named.items()}
     return Interactive(scene.replace(), {**(controls or {}), **by_name}, how)
 
@@ -124,13 +122,7 @@ class Interactive:
         self.scene, self.picture, self.values = scene, picture, values
 
     def _ipython_display_(self) -> None:
-        if not in_notebook():
-            print(repr(self))
-            return
-        self._stills.append(Still())
-        self._stills[-1].show(self.picture._repr_png_())
-        if not has_widgets():
-            print(f"Sliders need: {INSTALL}", file=sys.stderr)
+        if not open_cell(self, self._stills, self.picture._repr_png_(), "Sliders need"):
             return
         if self._box is None:
             import ipywidgets  # noqa: PLC0415 # it is an extra

@@ -22,6 +22,22 @@ def has_widgets() -> bool:
     return importlib.util.find_spec("anywidget") is not None
 
 
+def open_cell(thing: object, stills: list[Still], png: bytes, what: str) -> bool:
+    """Show a picture in this cell, which joins those of other cells; say whether the widget of the thing can follow.
+
+    The still comes first: where the widget answers it may hide what stands before it.
+    """
+    if not in_notebook():
+        print(repr(thing))
+        return False
+    stills.append(Still())
+    stills[-1].show(png)
+    if not has_widgets():
+        print(f"{what}: {INSTALL}", file=sys.stderr)
+        return False
+    return True
+
+
 def show(widget: Any, otherwise: str) -> None:
     """Show a widget; `otherwise` is what stands there where it is only read."""
     bundle = widget._repr_mimebundle_()

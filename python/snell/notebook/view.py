@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import json
-import sys
 from typing import Any
 
 from ..errors import PictureError, SnellError
 from ..picture import Picture
 from ..tree import RayTree
-from .still import INSTALL, Still, has_widgets, in_notebook, show
+from .still import Still, open_cell, show
 
 _CSS_HEIGHT = "34rem"
 
@@ -83,14 +82,7 @@ class View:
         return tree
 
     def _ipython_display_(self) -> None:
-        if not in_notebook():
-            print(repr(self))
-            return
-        # First the still: where the widget answers it hides what stands before it.
-        self._stills.append(Still())
-        self._stills[-1].show(self.picture._repr_png_())
-        if not has_widgets():
-            print(f"The view in 3D needs: {INSTALL}", file=sys.stderr)
+        if not open_cell(self, self._stills, self.picture._repr_png_(), "The view in 3D needs"):
             return
         from .widget import ViewWidget  # noqa: PLC0415 # anywidget is an extra
 
