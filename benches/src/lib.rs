@@ -9,7 +9,7 @@ pub mod rays;
 pub mod scenes;
 pub mod spheres;
 
-use snell::geometry::bvh::{Bvh, Quality, Shapes};
+use snell::geometry::bvh::{Bvh, MARGIN, Quality, Shapes};
 use snell::geometry::{Bounds, Sphere};
 use snell::render::{LaneWidth, Options};
 use snell::scene::{Problem, Scene};
@@ -39,7 +39,7 @@ pub fn build(scene: &Scene, threads: usize) -> Result<(World, Duration), String>
     let shapes = Shapes { spheres: &spheres, vertices: &vertices, faces: &faces, ..Shapes::default() };
     let start = Instant::now();
     let everything = (0..shapes.count()).map(|i| shapes.bounds(i)).fold(Bounds::EMPTY, Bounds::union);
-    let tree = Bvh::build(&shapes, vec![], everything.diagonal(), Quality::Good, threads);
+    let tree = Bvh::build(&shapes, vec![], MARGIN * everything.diagonal(), Quality::Good, threads);
     let time = start.elapsed();
     drop(black_box(tree));
     let problems = |found: Vec<Problem>| found.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ");

@@ -1,7 +1,10 @@
 //! Vectors, rays, and what a ray can hit. Pure geometry: no materials, no light.
 
+pub mod area;
 pub mod bounds;
 pub mod bvh;
+#[cfg(test)]
+pub(crate) mod exact;
 pub mod make;
 pub mod mesh;
 pub mod ray;

@@ -3,14 +3,21 @@
 use super::Vec3;
 use crate::lanes::Lanes;
 
-/// The three axes, the one along which a ray goes farthest last, and the shear that makes it the z axis.
+/// Where a ray goes, as triangles need it: its components in the order `k`, the axis along which it goes farthest last.
 ///
-/// Woop, Benthin and Wald, *Watertight Ray/Triangle Intersection*, JCGT 2 (2013), section 3. With `k` the axes:
-/// `x = v[k₀] + shear.x·v[k₂]`, `y = v[k₁] + shear.y·v[k₂]`, `z = shear.z·v[k₂]`.
+/// The shear makes the ray the z axis (Woop, Benthin and Wald, *Watertight Ray/Triangle Intersection*, JCGT 2 (2013), section 3):
+/// seen along it, a point `v` from its origin is at `x = v[k₀] + shear₀·v[k₂]`, `y = v[k₁] + shear₁·v[k₂]`.
 ///
-/// Everything that is called *permuted* has its components in the order `k`.
+/// Everything that is called *permuted* has its components in this order.
 #[derive(Clone, Copy, Debug)]
-pub struct Shear<L = f64>(pub Vec3<L>);
+pub struct Heading<L = f64> {
+    /// The permuted direction.
+    pub dir: Vec3<L>,
+    /// The [`inverse`] of each of its components.
+    pub inverse: Vec3<L>,
+    /// `−dir[k₀]/dir[k₂]` and `−dir[k₁]/dir[k₂]`, from −1 to 1.
+    pub shear: [L; 2],
+}
 
 /// The order of the axes for a ray whose main axis, the one of its largest component, is this one.
 pub const fn axes(main: usize) -> [usize; 3] {
@@ -35,17 +42,18 @@ pub fn inverse<L: Lanes>(component: L) -> L {
     (L::splat(1.0) / component).min(L::splat(f64::MAX)).max(L::splat(-f64::MAX))
 }
 
-impl<L: Lanes> Shear<L> {
-    /// The shear of a permuted direction.
+impl<L: Lanes> Heading<L> {
+    /// That of a permuted direction.
     #[inline(always)]
     pub fn new(dir: Vec3<L>) -> Self {
-        Self(Vec3::new(-(dir.x / dir.z), -(dir.y / dir.z), inverse(dir.z)))
+        let inverse = Vec3::new(inverse(dir.x), inverse(dir.y), inverse(dir.z));
+        Self { dir, inverse, shear: [-(dir.x / dir.z), -(dir.y / dir.z)] }
     }
 
-    /// A permuted vector in ray space: z is the distance along the ray in units of its direction.
+    /// A permuted vector seen along the ray.
     #[inline(always)]
-    pub fn apply(&self, v: Vec3<L>) -> Vec3<L> {
-        Vec3::new(v.x + self.0.x * v.z, v.y + self.0.y * v.z, self.0.z * v.z)
+    pub fn seen(&self, v: Vec3<L>) -> [L; 2] {
+        [v.x + self.shear[0] * v.z, v.y + self.shear[1] * v.z]
     }
 }
 
@@ -68,9 +76,9 @@ mod tests {
             let v = Vec3::new(x, y, z);
             prop_assume!(v.length() > 1e-3);
             let dir = v.unit().permuted(axes(main_axis(v)));
-            let image = Shear::new(dir).apply(dir);
+            let [x, y] = Heading::new(dir).seen(dir);
             // Two roundings per component of order one.
-            prop_assert!(image.x.abs() < 5e-16 && image.y.abs() < 5e-16 && (image.z - 1.0).abs() < 5e-16);
+            prop_assert!(x.abs() < 5e-16 && y.abs() < 5e-16);
             prop_assert!(dir.z.abs() >= dir.x.abs() && dir.z.abs() >= dir.y.abs());
         }
     }

@@ -1,7 +1,25 @@
-//! Ray and triangle, watertight.
+//! Ray and triangle, watertight for triangles of any shape.
+//!
+//! Three questions are asked, each in the way that rounding harms least:
+//!
+//! 1. *Does the line go through?* Woop, Benthin and Wald (2013): seen along the ray, the corners are points in a plane, and the
+//!    signs of three edge functions say whether the ray is between them. `fl(a·b) − fl(c·d)` has the sign of the exact value or
+//!    is zero (rounding is monotonic), zero counts as inside, and both triangles of an edge see the same two corners: a ray
+//!    cannot slip through a shared edge or corner. A corner is seen where it is to within 6 roundings of its distance
+//!    ([`SEEN`]): a line that passes an edge at more than that is told right, however thin the triangle. Where products cancel
+//!    to zero, as for a ray in the plane of the triangle, the signs say nothing; but the ray must also lie in the rectangle
+//!    around the three points, which is decided without rounding, and with that is no farther outside than a rounding of the
+//!    triangle's own size.
+//! 2. *Where is its plane?* `t = n·(a − o)/(n·d)` with the area vector of the corners themselves, which is good for slivers too
+//!    ([`area`](super::area)). The weights of the edge functions would do for round triangles only: they err by `2⁻⁵³` times the
+//!    aspect.
+//! 3. *Where along it is the triangle?* Grazing rays meet a plane anywhere. The hit is moved into the triangle's own box, with
+//!    [`SLACK`] for what was rounded in 1, which a ray that goes through the triangle surely meets. So no tree of boxes can
+//!    hide a hit, and none is refused.
 
 use super::Vec3;
-use super::ray::Shear;
+use super::area::area_vector;
+use super::ray::Heading;
 use crate::lanes::{Lanes, Mask};
 
 /// Where a ray meets a triangle.
@@ -9,72 +27,134 @@ use crate::lanes::{Lanes, Mask};
 pub struct TriangleHit<L: Lanes> {
     /// Distance along the ray.
     pub t: L,
-    /// Weight of the second vertex.
-    pub beta: L,
-    /// Weight of the third vertex; the first has `1 − beta − gamma`.
-    pub gamma: L,
     /// Does the line of the ray meet the triangle, from either side, before or behind its origin?
     pub meets: L::Mask,
 }
 
-/// How far outside of its box a triangle may be hit, relative to its distance: sixteen roundings. A hit is a few of them off,
-/// and the boxes of the tree have room for more than this.
+/// How far from where it is a corner may be seen, relative to the distance of the farthest corner along any axis: with
+/// `u = 2⁻⁵³`, `a − o` errs by `u` in each component, the shear by `u`, its product by `u`, and the sum by `u` of at most twice
+/// as much.
+pub const SEEN: f64 = 6.0 / (1u64 << 53) as f64;
+
+/// How far outside of its box a triangle may be hit, relative to its distance: sixteen roundings, [`SEEN`] and those of the
+/// distances to the sides of the box. The boxes of the tree have room for more than this.
 const SLACK: f64 = 1.0 / (1u64 << 49) as f64;
 
-/// Meets a ray with a triangle, from either side, edges included. `origin` and `vertices` are permuted as `shear` wants
-/// it; the direction need not be of unit length.
-///
-/// Woop, Benthin and Wald (2013): the vertices are moved into the frame in which the ray is the z axis, and the signs of
-/// three two-dimensional edge functions decide. `fl(a·b) − fl(c·d)` has the sign of the exact value or is zero (rounding is
-/// monotonic), zero counts as inside, and both triangles of an edge see the same two vertices: a ray cannot slip
-/// through a shared edge or vertex. A triangle without area is not hit.
-///
-/// Where a ray lies in the plane of a triangle to within rounding, the edge functions are noise, and may call a ray inside
-/// that passes far from it. So a hit must also lie in the triangle's own box; then no tree of boxes can hide it.
+/// Meets a ray with a triangle, from either side, edges included. `origin` and `vertices` are permuted as `heading` is; the
+/// direction need not be of unit length. A triangle without area is not hit.
 #[inline(always)]
-pub fn intersect<L: Lanes>(origin: Vec3<L>, shear: &Shear<L>, vertices: [Vec3<L>; 3]) -> TriangleHit<L> {
+pub fn intersect<L: Lanes>(origin: Vec3<L>, heading: &Heading<L>, vertices: [Vec3<L>; 3]) -> TriangleHit<L> {
     let zero = L::splat(0.0);
     let [a, b, c] = vertices;
     let corners = [a - origin, b - origin, c - origin];
-    let (a, b, c) = (shear.apply(corners[0]), shear.apply(corners[1]), shear.apply(corners[2]));
-    let u = c.x * b.y - c.y * b.x;
-    let v = a.x * c.y - a.y * c.x;
-    let w = b.x * a.y - b.y * a.x;
-    let front = u.ge(zero) & v.ge(zero) & w.ge(zero);
-    let back = u.le(zero) & v.le(zero) & w.le(zero);
-    let inside = front | back;
+    let seen = [heading.seen(corners[0]), heading.seen(corners[1]), heading.seen(corners[2])];
+    let edges = Edges::new(seen);
+    let inside = edges.inside();
     if !inside.any() {
-        return TriangleHit { t: zero, beta: zero, gamma: zero, meets: inside };
+        return TriangleHit { t: zero, meets: inside };
     }
-    let det = u + v + w;
-    let t = (u * a.z + v * b.z + w * c.z) / det;
-    // Where the ray is at `t`, seen from its origin.
-    let along = t / shear.0.z;
-    let at = Vec3::new(-(shear.0.x * along), -(shear.0.y * along), along);
-    let meets = inside & !det.eq(zero) & in_box(at, corners);
-    TriangleHit { t, beta: v / det, gamma: w / det, meets }
+    let n = area_vector(vertices);
+    let t = n.dot(corners[0]) / n.dot(heading.dir);
+    let [enter, leave] = box_along(heading, corners);
+    // 0/0 for a triangle without area, and for a ray that starts in its plane and stays there.
+    let meets = inside & !edges.area().eq(zero) & around_origin(seen) & t.eq(t) & enter.le(leave);
+    TriangleHit { t: t.max(enter).min(leave), meets }
 }
 
-/// Does a point lie in the box of three others, all seen from the origin of a ray, but for [`SLACK`]?
+/// The weights of the corners at the point where a line meets a triangle, which they are good for as far as it is round. Of no meaning
+/// where the line misses it; not finite where it is seen edge on.
+pub fn weights(origin: Vec3, heading: &Heading, vertices: [Vec3; 3]) -> [f64; 3] {
+    let edges = Edges::new(vertices.map(|v| heading.seen(v - origin)));
+    let area = edges.area();
+    [edges.u / area, edges.v / area, edges.w / area]
+}
+
+/// Does the line meet the triangle from the side of its normal, so that this points against it? Decided by the edge functions, as
+/// whether it meets it at all, so that the faces of a solid are met in turns from outside and from inside. By the normal where
+/// those cancel.
+pub fn is_front(origin: Vec3, dir: Vec3, vertices: [Vec3; 3]) -> bool {
+    let main = super::ray::main_axis(dir);
+    let k = super::ray::axes(main);
+    let heading = Heading::new(dir.permuted(k));
+    let area = Edges::new(vertices.map(|v| heading.seen((v - origin).permuted(k)))).area();
+    if area == 0.0 {
+        return area_vector(vertices).dot(dir) < 0.0;
+    }
+    // Seen along the ray, the corners of a face that looks the same way turn left: u, v and w are negative of that. A ray that goes
+    // backward along its main axis sees them mirrored, and so does an odd order of the axes.
+    (area > 0.0) == ((dir.component(main) > 0.0) == (main != 1))
+}
+
+/// How far a point is from a triangle, to within some roundings of the distances to its corners.
+pub fn distance(corners: [Vec3; 3], p: Vec3) -> f64 {
+    let [a, b, c] = corners;
+    let n = normal(corners);
+    let k = super::ray::axes(super::ray::main_axis(n));
+    // Seen along its normal the triangle is as large as it is.
+    let above = intersect(p.permuted(k), &Heading::new(n.permuted(k)), corners.map(|v| v.permuted(k)));
+    let to_segment = |a: Vec3, b: Vec3| {
+        let (along, to_p) = (b - a, p - a);
+        let share = (to_p.dot(along) / along.dot(along)).clamp(0.0, 1.0);
+        (to_p - along * share).length()
+    };
+    let rim = to_segment(a, b).min(to_segment(b, c)).min(to_segment(c, a));
+    if above.meets { rim.min(above.t.abs()) } else { rim }
+}
+
+/// For each corner twice the area that the ray spans with the other two, as they are seen along it.
+struct Edges<L> {
+    u: L,
+    v: L,
+    w: L,
+}
+
+impl<L: Lanes> Edges<L> {
+    #[inline(always)]
+    fn new([a, b, c]: [[L; 2]; 3]) -> Self {
+        Self { u: c[0] * b[1] - c[1] * b[0], v: a[0] * c[1] - a[1] * c[0], w: b[0] * a[1] - b[1] * a[0] }
+    }
+
+    #[inline(always)]
+    fn inside(&self) -> L::Mask {
+        let (Self { u, v, w }, zero) = (self, L::splat(0.0));
+        (u.ge(zero) & v.ge(zero) & w.ge(zero)) | (u.le(zero) & v.le(zero) & w.le(zero))
+    }
+
+    #[inline(always)]
+    fn area(&self) -> L {
+        self.u + self.v + self.w
+    }
+}
+
+/// Is the ray, the origin of the plane in which three points are seen, in the rectangle around them?
 #[inline(always)]
-fn in_box<L: Lanes>(at: Vec3<L>, [a, b, c]: [Vec3<L>; 3]) -> L::Mask {
+fn around_origin<L: Lanes>([a, b, c]: [[L; 2]; 3]) -> L::Mask {
+    let zero = L::splat(0.0);
+    let [low_x, low_y] = [a[0].min(b[0]).min(c[0]), a[1].min(b[1]).min(c[1])];
+    let [high_x, high_y] = [a[0].max(b[0]).max(c[0]), a[1].max(b[1]).max(c[1])];
+    low_x.le(zero) & high_x.ge(zero) & low_y.le(zero) & high_y.ge(zero)
+}
+
+/// Where a ray enters and leaves the box of three points, seen from its origin, with [`SLACK`]: the slab test of the tree, by the same
+/// operations, so that its larger boxes are entered no later and left no earlier.
+#[inline(always)]
+fn box_along<L: Lanes>(heading: &Heading<L>, [a, b, c]: [Vec3<L>; 3]) -> [L; 2] {
     let (low_x, high_x) = (a.x.min(b.x).min(c.x), a.x.max(b.x).max(c.x));
     let (low_y, high_y) = (a.y.min(b.y).min(c.y), a.y.max(b.y).max(c.y));
     let (low_z, high_z) = (a.z.min(b.z).min(c.z), a.z.max(b.z).max(c.z));
     let far = high_x.max(-low_x).max(high_y.max(-low_y)).max(high_z.max(-low_z));
     let slack = L::splat(SLACK) * far;
-    (low_x - slack).le(at.x)
-        & at.x.le(high_x + slack)
-        & (low_y - slack).le(at.y)
-        & at.y.le(high_y + slack)
-        & (low_z - slack).le(at.z)
-        & at.z.le(high_z + slack)
+    let i = heading.inverse;
+    let (x0, x1) = ((low_x - slack) * i.x, (high_x + slack) * i.x);
+    let (y0, y1) = ((low_y - slack) * i.y, (high_y + slack) * i.y);
+    let (z0, z1) = ((low_z - slack) * i.z, (high_z + slack) * i.z);
+    [x0.min(x1).max(y0.min(y1)).max(z0.min(z1)), x0.max(x1).min(y0.max(y1)).min(z0.max(z1))]
 }
 
 /// Unit normal by the right-hand rule; not finite where the triangle has no area.
 #[inline(always)]
-pub fn normal<L: Lanes>([a, b, c]: [Vec3<L>; 3]) -> Vec3<L> {
-    (b - a).cross(c - a).unit()
+pub fn normal<L: Lanes>(corners: [Vec3<L>; 3]) -> Vec3<L> {
+    area_vector(corners).unit()
 }
 
 #[cfg(test)]
@@ -85,8 +165,10 @@ mod tests {
 
     fn hit(origin: Vec3, dir: Vec3, vertices: [Vec3; 3]) -> Option<(f64, f64, f64)> {
         let k = axes(main_axis(dir));
-        let h = intersect(origin.permuted(k), &Shear::new(dir.permuted(k)), vertices.map(|v| v.permuted(k)));
-        (h.meets && h.t > 0.0).then_some((h.t, h.beta, h.gamma))
+        let (origin, heading, vertices) =
+            (origin.permuted(k), Heading::new(dir.permuted(k)), vertices.map(|v| v.permuted(k)));
+        let (hit, [_, beta, gamma]) = (intersect(origin, &heading, vertices), weights(origin, &heading, vertices));
+        (hit.meets && hit.t > 0.0).then_some((hit.t, beta, gamma))
     }
 
     fn v(x: f64, y: f64, z: f64) -> Vec3 {

@@ -5,13 +5,16 @@
 //! to within the rounding of hits, are one interface, from the medium before all of them to the medium behind all of them;
 //! an opaque surface among them is what is seen. Where both media are the same, or have the same index and the face shows
 //! nothing itself, there is no interface, and the ray goes on as if nothing had been there.
+//!
+//! At the start of a ray ways out count from a little behind it, ways in and opaque surfaces as [`Leaving`] says. A ray that starts
+//! within a solid at an edge may have been rounded to its outside, from where no face leads out: it leaves by the nearest one.
 
 use super::hits::{Face, Hits, SKY};
+use super::leaving::Leaving;
 use super::media::{Media, OUTSIDE};
-use super::queue::Generation;
+use super::queue::{Generation, RayKind};
 use super::statistics::{Overlap, Statistics};
 use crate::film::Rgb;
-use crate::geometry::Vec3;
 use crate::geometry::bvh::{PACKET, Packet};
 use crate::lanes::{Kernel, Lanes, Mask, index};
 use crate::optics::absorption::transmittance_rgb;
@@ -26,6 +29,11 @@ pub(crate) struct Ways {
     /// 1 where it meets the face from outside.
     outer: [f64; PACKET],
     band: [f64; PACKET],
+    /// Where it is clear of the plane of the face that it leaves, and which rays were mirrored there.
+    clear: [f64; PACKET],
+    mirrored: u64,
+    /// How often it has left something where it starts, without a face in its way.
+    left: [u8; PACKET],
     /// From where on the medium has been the same, and what the media before have let through.
     since: [f64; PACKET],
     kept: [[f64; PACKET]; 3],
@@ -40,12 +48,18 @@ impl Default for Ways {
             after: zero,
             outer: zero,
             band: zero,
+            clear: zero,
+            mirrored: 0,
+            left: [0; PACKET],
             since: zero,
             kept: [[1.0; PACKET]; 3],
             crossings: Vec::new(),
         }
     }
 }
+
+/// More media than this do not end at one edge.
+const AT_ONE_EDGE: u8 = 8;
 
 /// What a ray has met.
 enum Met {
@@ -92,12 +106,16 @@ impl<G: Generation> Kernel for FindInterfaces<'_, '_, G> {
                 load.medium.store(&mut ways.before[start..]);
                 load.band.store(&mut ways.band[start..]);
             }
+            ways.mirrored = 0;
             for ray in ones(all) {
+                ways.mirrored |= u64::from(rays.kind(first + ray) == RayKind::Mirror) << ray;
                 ways.start(world, packet, ray);
             }
             let (mut open, mut met) = (all, 0);
             while open != 0 {
                 let hit = world.tree.intersect::<L, false>(packet, open);
+                let lost = ones(open & !hit).filter(|&ray| ways.leave_where_it_starts(media, packet, ray));
+                let hit = hit | lost.fold(0, |lost, ray| lost | 1 << ray);
                 open = 0;
                 for ray in ones(hit) {
                     match ways.meet(media, packet, ray, rays.pixel(first + ray), statistics) {
@@ -182,10 +200,35 @@ impl Ways {
         for channel in &mut self.kept {
             channel[ray] = 1.0;
         }
-        // A ray that has just entered a solid may leave it at once, at an edge, and by rounding a little before it starts.
-        if index(self.before[ray]) as u32 != OUTSIDE {
-            packet.t_min[ray] = -world.behind;
+        (self.clear[ray], self.left[ray]) = (packet.t_min[ray], 0);
+        // At an edge a ray may have crossed a face by rounding a little before it starts.
+        let anywhere = packet.source[ray] < 0.0 && index(self.before[ray]) as u32 == OUTSIDE;
+        packet.t_min[ray] = if anywhere { 0.0 } else { -world.behind };
+    }
+
+    fn leaving(&self, world: &World, packet: &Packet, ray: usize) -> Leaving {
+        let (origin, dir) = packet.ways::<f64>(ray);
+        Leaving::ray(world, origin, dir, packet.source[ray], self.clear[ray], self.mirrored >> ray & 1 == 1)
+    }
+
+    /// Does a ray really meet a face, where it could only be a part of the place that it leaves?
+    fn meets(&self, world: &World, packet: &Packet, ray: usize, primitive: u32, t: f64) -> bool {
+        if t > self.clear[ray] { t > 0.0 } else { self.leaving(world, packet, ray).meets(world, primitive, t) }
+    }
+
+    /// For a ray that has missed its way out of something: was it rounded to the outside of an edge where it starts? Then it meets
+    /// the nearest face there that leads out, at once.
+    fn leave_where_it_starts(&mut self, media: &Media<'_>, packet: &mut Packet, ray: usize) -> bool {
+        let before = index(self.before[ray]) as u32;
+        let is_clear = packet.source[ray] < 0.0 || packet.t_min[ray] > self.clear[ray];
+        if before == OUTSIDE || is_clear || self.left[ray] == AT_ONE_EDGE {
+            return false;
         }
+        let (origin, dir) = packet.ways::<f64>(ray);
+        let Some(primitive) = media.way_out(before, origin, dir) else { return false };
+        (packet.t[ray], packet.primitive[ray]) = (0.0, f64::from(primitive));
+        self.left[ray] += 1;
+        true
     }
 
     /// Looks at what a ray has hit.
@@ -203,24 +246,29 @@ impl Ways {
         let solid = world.solid_of(primitive as usize);
         if solid == NO_SOLID {
             (self.after[ray], self.outer[ray]) = (self.before[ray], 1.0);
-            return if t > 0.0 && !leaves_pane(world, packet, ray) { Met::Face } else { Met::Nothing(t) };
+            let met = self.meets(world, packet, ray, primitive, t) && !leaves_pane(world, packet, ray);
+            return if met { Met::Face } else { Met::Nothing(t) };
         }
         let (origin, dir) = packet.ways::<f64>(ray);
         let enters = world.enters(primitive as usize, solid, origin, dir, t);
+        if enters && t > self.clear[ray] && media.contains(before, solid) && self.leave_where_it_starts(media, packet, ray) {
+            // Nothing is entered twice: there was a way out.
+            return self.meet(media, packet, ray, pixel, statistics);
+        }
         let mut place = Place { after: before, up_to: t, face: (t, primitive), enters };
         if world.solids[solid as usize].touches {
-            let source = packet.source[ray];
-            if let Some(opaque) = self.look_around(media, (origin, dir), before, source, &mut place) {
+            if let Some(opaque) = self.look_around(media, packet, ray, &mut place) {
                 // What is opaque is seen, and nothing else in its place.
                 (packet.t[ray], packet.primitive[ray]) = (opaque.0, f64::from(opaque.1));
                 (self.after[ray], self.outer[ray]) = (self.before[ray], 1.0);
                 return Met::Face;
             }
-        } else if t > 0.0 || !enters {
+        } else if !enters || self.meets(world, packet, ray, primitive, t) {
             place.after = media.cross(before, primitive, origin, dir, t);
         }
         let Place { after, up_to, face, enters } = place;
-        if after == before && !enters && t > self.since[ray] + world.clearance && !media.contains(before, solid) {
+        let is_clear = t > self.clear[ray].max(self.since[ray] + world.clearance);
+        if after == before && !enters && is_clear && !media.contains(before, solid) {
             statistics.stray.add(pixel);
         }
         if media.top(before) == media.top(after) {
@@ -249,24 +297,33 @@ impl Ways {
     fn look_around(
         &mut self,
         media: &mut Media<'_>,
-        (origin, dir): (Vec3, Vec3),
-        before: u32,
-        source: f64,
+        packet: &Packet,
+        ray: usize,
         place: &mut Place,
     ) -> Option<(f64, u32)> {
-        let world = media.world();
-        let t = place.up_to;
+        let (world, leaving) = (media.world(), self.leaving(media.world(), packet, ray));
+        let Leaving { origin, dir, source, .. } = leaving;
+        let (t, before) = (place.up_to, index(self.before[ray]) as u32);
         self.crossings.clear();
         world.tree.crossings(origin, dir, [t - world.clearance, t + world.clearance], &mut self.crossings);
+        if !self.crossings.contains(&place.face) {
+            // It is met where the ray starts, and does not lie in its way.
+            self.crossings.push(place.face);
+        }
         self.crossings.sort_by_key(|&(_, primitive)| primitive);
         let opaque = |&&(t, primitive): &&(f64, u32)| {
             let is_opaque = world.solid_of(primitive as usize) == NO_SOLID && !world.is_thin(primitive as usize);
-            t > 0.0 && is_opaque && f64::from(primitive) != source
+            is_opaque && f64::from(primitive) != source && leaving.meets(world, primitive, t)
         };
         if let Some(&found) = self.crossings.iter().find(opaque) {
             return Some(found);
         }
         let mut crossed = |face: &(f64, u32)| {
+            let &(t, primitive) = face;
+            let leads_out = media.contains(place.after, world.solid_of(primitive as usize));
+            if !leads_out && t <= leaving.clear && !leaving.meets(world, primitive, t) {
+                return false;
+            }
             let next = media.cross(place.after, face.1, origin, dir, face.0);
             place.up_to = place.up_to.max(face.0);
             std::mem::replace(&mut place.after, next) != next

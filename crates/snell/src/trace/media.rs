@@ -4,9 +4,10 @@
 //! that of the solid with the highest priority, the last entered among equals (Schmidt and Budge, *Simple Nested
 //! Dielectrics in Ray Traced Images*, Journal of Graphics Tools 7(2), 2002); with no solid, the space between the objects.
 
+use super::leaving::Leaving;
 use super::pane::Pane;
 use crate::film::Rgb;
-use crate::geometry::{Bounds, Vec3};
+use crate::geometry::{Bounds, Vec3, triangle};
 use crate::optics::absorption::transmittance_rgb;
 use crate::optics::fresnel::fresnel_dielectric;
 use crate::world::{Medium, NO_SOLID, World};
@@ -17,15 +18,6 @@ pub(crate) const OUTSIDE: u32 = 0;
 
 /// The band of a ray that has not split: all colours.
 pub(crate) const WHITE: u32 = u32::MAX;
-
-/// A ray from a surface towards a light.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Way {
-    pub origin: Vec3,
-    pub dir: Vec3,
-    /// The primitive that it leaves.
-    pub source: f64,
-}
 
 /// A set of solids.
 #[derive(Clone, Debug)]
@@ -137,6 +129,24 @@ impl<'a> Media<'a> {
         if front != NO_SOLID && enters == self.contains(after, front) { self.across(after, front) } else { after }
     }
 
+    /// The face nearest to a point in this set, within what a hit may be off, through which a ray from there would leave one of its
+    /// solids.
+    pub fn way_out(&self, set: u32, origin: Vec3, dir: Vec3) -> Option<u32> {
+        let (world, mut faces) = (self.world, Vec::new());
+        world.tree.near(origin, &mut faces);
+        let leads_out = |primitive: u32| {
+            let [behind, front] = [world.solid_of(primitive as usize), world.front_of(primitive as usize)];
+            let enters = behind != NO_SOLID && world.enters(primitive as usize, behind, origin, dir, 0.0);
+            self.contains(set, if enters { front } else { behind }) && !(enters && self.contains(set, behind))
+        };
+        let distances = faces.into_iter().filter(|&face| leads_out(face)).map(|face| {
+            let corners = world.corners(face as usize);
+            (triangle::distance(corners, origin), face)
+        });
+        let near = distances.filter(|&(distance, _)| distance <= world.clearance);
+        near.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))).map(|(_, face)| face)
+    }
+
     /// Between these sets a solid was left that had the same priority as the one that is there before and after, and another
     /// medium: nobody has said which of the two is there.
     pub fn overlap(&self, before: u32, after: u32) -> bool {
@@ -169,12 +179,11 @@ impl<'a> Media<'a> {
     /// What of the light from `distance` away reaches a point in this set, straight through what is transparent: black behind
     /// an opaque surface. At each interface the light loses what Fresnel reflects at the angle of its straight way on the side
     /// of the thinner medium, so that a rim is not black; between them, what the media absorb.
-    pub fn light_along(&mut self, way: &Way, distance: f64, mut set: u32) -> Rgb {
+    pub(super) fn light_along(&mut self, way: &Leaving, distance: f64, mut set: u32) -> Rgb {
         let (world, clearance) = (self.world, self.world.clearance);
-        let first = if set == OUTSIDE { 0.0 } else { -clearance };
         let mut crossings = std::mem::take(&mut self.crossings);
         crossings.clear();
-        world.tree.crossings(way.origin, way.dir, [first, distance], &mut crossings);
+        world.tree.crossings(way.origin, way.dir, [-world.behind, distance], &mut crossings);
         let (mut light, mut since) = (Rgb::gray(1.0), 0.0);
         // What lies in one place is one interface, as for all rays.
         for place in crossings.chunk_by(|a, b| b.0 - a.0 <= clearance) {
@@ -182,19 +191,18 @@ impl<'a> Media<'a> {
             let (mut next, mut entered, mut pane) = (set, None, false);
             for &(t, primitive) in place {
                 let solid = world.solid_of(primitive as usize);
-                let leaves = f64::from(primitive) == way.source;
+                let meets = way.meets(world, primitive, t);
                 if solid == NO_SOLID {
-                    let starts = leaves && world.starts_at(primitive as usize, way.origin, way.dir, t);
                     // On the edge between two triangles a pane is met twice, and is one all the same.
                     let is_pane = world.is_thin(primitive as usize);
                     let again = is_pane && std::mem::replace(&mut pane, true);
-                    if t > 0.0 && t < distance && !starts && !again {
+                    if meets && t < distance && !again {
                         light = light * self.through_surface(set, primitive as usize, way, t);
                     }
                     continue;
                 }
                 let enters = !self.contains(next, solid);
-                if !(enters && (leaves || t <= 0.0)) {
+                if !enters || meets {
                     let after = self.cross(next, primitive, way.origin, way.dir, t);
                     if enters && after != next {
                         entered = Some((solid, primitive));
@@ -223,7 +231,7 @@ impl<'a> Media<'a> {
     }
 
     /// What a surface that no solid has lets through: a thin face something, others nothing.
-    fn through_surface(&self, set: u32, primitive: usize, way: &Way, t: f64) -> Rgb {
+    fn through_surface(&self, set: u32, primitive: usize, way: &Leaving, t: f64) -> Rgb {
         let (world, point) = (self.world, way.origin + way.dir * t);
         let material = &world.materials[world.material_of(primitive) as usize];
         let Some(thickness) = material.thickness.filter(|_| world.is_thin(primitive)) else { return Rgb::gray(0.0) };

@@ -16,6 +16,7 @@ mod camera;
 mod generation;
 mod hits;
 mod interfaces;
+mod leaving;
 mod lecture;
 mod media;
 mod observer;

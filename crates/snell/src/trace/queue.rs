@@ -85,6 +85,7 @@ pub(crate) trait Generation {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Load<L: Lanes> {
     pub weight: Weight<L>,
+    /// No hit up to here counts; with real optics none without a closer look ([`Leaving`](super::leaving::Leaving)).
     pub t_min: L,
     /// The primitive that the ray leaves, −1 for none.
     pub source: L,

@@ -1,6 +1,8 @@
 //! Writes down the rays of a pixel while the engine traces them: there is no second tracer.
 
 use super::hits::{Batch, Hits};
+use super::leaving::{Leaving, until_clear};
+use super::lecture::T_MIN;
 use super::media::{Media, WHITE};
 use super::observer::Observer;
 use super::queue::{Generation, RayQueue};
@@ -136,17 +138,20 @@ fn between(world: &World, hit: &Batch<'_, f64>, wi: Vec3, distance: f64) -> Vec<
     if world.render.shadows == Shadows::Off {
         return Vec::new();
     }
-    let (origin, source) = (hit.point(), hit.primitive());
-    let mut crossings = Vec::new();
-    world.tree.crossings(origin, wi, [0.0, distance], &mut crossings);
     let real_optics = world.render.integrator == Integrator::Whitted;
-    let t_min = if real_optics { 0.0 } else { super::lecture::T_MIN };
+    let (origin, source) = (hit.point(), hit.primitive());
+    let clear = if real_optics { until_clear(world, hit.geometric_normal().dot(wi)) } else { T_MIN };
+    let leaving = Leaving { origin, dir: wi, source, clear, wo: hit.wo() };
+    let mut crossings = Vec::new();
+    world.tree.crossings(origin, wi, [-world.behind, distance], &mut crossings);
     crossings.retain(|&(t, primitive)| {
-        let sphere = world.spheres.get(primitive as usize);
+        if real_optics {
+            return t < distance && leaving.meets(world, primitive, t);
+        }
         // The lecture's spheres are met from outside only.
+        let sphere = world.spheres.get(primitive as usize);
         let enters = sphere.is_none_or(|sphere| t < (sphere.center - origin).dot(wi));
-        let starts = f64::from(primitive) == source && world.starts_at(primitive as usize, origin, wi, t);
-        t > t_min && t < distance && !starts && (real_optics || enters)
+        t > T_MIN && t < distance && f64::from(primitive) != source && enters
     });
     let tinted = world.render.shadows == Shadows::Tinted;
     let blocks = |primitive: u32| {

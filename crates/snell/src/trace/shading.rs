@@ -2,7 +2,8 @@
 
 use super::hits::{Batch, Hits};
 use super::lecture::T_MIN;
-use super::media::{Media, OUTSIDE, Way};
+use super::leaving::{Leaving, until_clear};
+use super::media::{Media, OUTSIDE};
 use super::observer::Observer;
 use super::whitted;
 use crate::film::Rgb;
@@ -11,11 +12,13 @@ use crate::geometry::bvh::{Nearest, PACKET, Packet};
 use crate::lanes::{Columns, Lanes, Mask, index};
 use crate::optics::phong::{self, Surface};
 use crate::scene::{Integrator, Shadows};
-use crate::world::LightSource;
+use crate::world::{LightSource, World};
 
 /// Columns of the rays towards a light.
 const HIT: usize = 0;
 const ORIGIN: usize = 1;
+const DISTANCE: usize = 7;
+const CLEAR: usize = 9;
 
 /// Rays towards one light; the memory is used again for the next one.
 #[derive(Debug, Default)]
@@ -24,10 +27,9 @@ pub(crate) struct ShadowRays {
     wi: Columns<3>,
     /// Whether the light reaches it, a bit per hit.
     lit: Vec<u64>,
-    /// Row of the hit, origin, direction, distance of the light, primitive that the ray leaves.
-    rays: Columns<9>,
-    /// Nothing nearer than this blocks a light.
-    t_min: f64,
+    /// Row of the hit, origin, direction, distance of the light, primitive that the ray leaves, and up to where nothing blocks the
+    /// light: with real optics, without a closer look.
+    rays: Columns<10>,
     /// With tinted shadows what of the light reaches each hit.
     light: Columns<3>,
 }
@@ -55,7 +57,6 @@ impl ShadowRays {
         let tinted = world.render.shadows == Shadows::Tinted;
         self.light.clear();
         let real_optics = world.render.integrator == Integrator::Whitted;
-        self.t_min = if real_optics { 0.0 } else { T_MIN };
         let mut count = 0;
         for start in (0..hits.len()).step_by(L::WIDTH) {
             let batch = hits.batch::<L>(world, start);
@@ -83,7 +84,8 @@ impl ShadowRays {
                 }
                 asked = asked & lit;
                 if let Some(spheres) = world.tree.few() {
-                    let nothing = Nearest::none(asked, L::splat(self.t_min), distance, source);
+                    let t_min = if real_optics { 0.0 } else { T_MIN };
+                    let nothing = Nearest::none(asked, L::splat(t_min), distance, source);
                     let hit = if real_optics {
                         nothing.among(true, spheres, point, wi).hit
                     } else {
@@ -96,12 +98,17 @@ impl ShadowRays {
                     };
                 } else {
                     let (row, p) = (L::ramp(start), point);
-                    self.rays.push(asked, [row, p.x, p.y, p.z, wi.x, wi.y, wi.z, distance, source]);
+                    let clear = if real_optics {
+                        until_clear(world, batch.geometric_normal().dot(wi))
+                    } else {
+                        L::splat(T_MIN)
+                    };
+                    self.rays.push(asked, [row, p.x, p.y, p.z, wi.x, wi.y, wi.z, distance, source, clear]);
                 }
             }
             self.lit[start / 64] |= u64::from(lit.bits()) << (start % 64);
         }
-        self.block::<L>(media, packet);
+        self.block::<L>(media, hits, packet);
         count
     }
 
@@ -119,11 +126,18 @@ impl ShadowRays {
         if !dimmed.any() {
             return lit;
         }
-        let (point, source, medium) = (hits.point(), hits.primitive(), hits.face().before);
+        let (point, source, medium, wo) = (hits.point(), hits.primitive(), hits.face().before, hits.wo());
+        let clear = until_clear(hits.world, hits.geometric_normal().dot(wi));
         let mut dark = 0;
         for lane in 0..L::WIDTH {
             if dimmed.test(lane) {
-                let way = Way { origin: point.lane(lane), dir: wi.lane(lane), source: source.lane(lane) };
+                let way = Leaving {
+                    origin: point.lane(lane),
+                    dir: wi.lane(lane),
+                    source: source.lane(lane),
+                    clear: clear.lane(lane),
+                    wo: wo.lane(lane),
+                };
                 let passed = media.light_along(&way, distance.lane(lane), index(medium.lane(lane)) as u32);
                 dark |= u32::from(passed == Rgb::gray(0.0)) << lane;
                 self.light.replace::<f64, 3>(0, start + lane, passed.into());
@@ -134,34 +148,30 @@ impl ShadowRays {
 
     /// Takes the light from the hits whose rays towards it meet anything, or what that takes of it.
     #[inline(always)]
-    fn block<L: Lanes>(&mut self, media: &mut Media<'_>, packet: &mut Packet) {
+    fn block<L: Lanes>(&mut self, media: &mut Media<'_>, hits: &Hits, packet: &mut Packet) {
         let world = media.world();
         let tinted = world.render.shadows == Shadows::Tinted;
+        let real_optics = world.render.integrator == Integrator::Whitted;
         let shear = world.tree.has_triangles();
         for first in (0..self.rays.len()).step_by(PACKET) {
             let count = (self.rays.len() - first).min(PACKET);
             for start in (0..count).step_by(L::WIDTH) {
-                let [x, y, z, dx, dy, dz, distance, source] = self.rays.group::<L, 8>(ORIGIN, first + start);
-                packet.set(
-                    start,
-                    Vec3::new(x, y, z),
-                    Vec3::new(dx, dy, dz),
-                    L::splat(self.t_min),
-                    distance,
-                    source,
-                    shear,
-                );
+                let [x, y, z, dx, dy, dz, distance, source, clear] = self.rays.group::<L, 9>(ORIGIN, first + start);
+                // A wall may be met a little behind the start, in the corner of a room.
+                let t_min = if real_optics { L::splat(-world.behind) } else { clear };
+                packet.set(start, Vec3::new(x, y, z), Vec3::new(dx, dy, dz), t_min, distance, source, shear);
             }
             let mut blocked = world.tree.intersect::<L, true>(packet, u64::MAX >> (PACKET - count));
+            if real_optics && !tinted {
+                blocked = self.look_closer::<L>(world, hits, packet, first, blocked);
+            }
             while blocked != 0 {
-                let ray = first + blocked.trailing_zeros() as usize;
-                let hit = index(self.rays.at(HIT, ray));
+                let row = first + blocked.trailing_zeros() as usize;
+                let hit = index(self.rays.at(HIT, row));
                 blocked &= blocked - 1;
                 let mut dark = true;
                 if tinted {
-                    let [x, y, z, dx, dy, dz, distance, source] = self.rays.group::<f64, 8>(ORIGIN, ray);
-                    let way = Way { origin: Vec3::new(x, y, z), dir: Vec3::new(dx, dy, dz), source };
-                    let passed = media.light_along(&way, distance, OUTSIDE);
+                    let passed = media.light_along(&self.leaving(world, hits, row), self.rays.at(DISTANCE, row), OUTSIDE);
                     self.light.replace::<f64, 3>(0, hit, passed.into());
                     dark = passed == Rgb::gray(0.0);
                 }
@@ -170,6 +180,37 @@ impl ShadowRays {
                 }
             }
         }
+    }
+
+    /// Which of the blocked rays of a packet are still blocked, if what is only a part of the place that they leave does not count.
+    #[inline(always)]
+    fn look_closer<L: Lanes>(
+        &self,
+        world: &World,
+        hits: &Hits,
+        packet: &mut Packet,
+        first: usize,
+        mut blocked: u64,
+    ) -> u64 {
+        let (mut again, mut waiting) = (0, blocked);
+        while waiting != 0 {
+            let ray = waiting.trailing_zeros() as usize & (PACKET - 1);
+            waiting &= waiting - 1;
+            let [distance, clear] = [DISTANCE, CLEAR].map(|column| self.rays.at(column, first + ray));
+            if packet.t[ray] <= clear && !self.leaving(world, hits, first + ray).is_blocked(world, distance) {
+                blocked &= !(1 << ray);
+                again |= 1 << ray;
+                (packet.t_min[ray], packet.t[ray], packet.primitive[ray]) = (clear, distance, -1.0);
+            }
+        }
+        if again == 0 { blocked } else { blocked | world.tree.intersect::<L, true>(packet, again) }
+    }
+
+    /// The ray of a row.
+    fn leaving(&self, world: &World, hits: &Hits, row: usize) -> Leaving {
+        let [x, y, z, dx, dy, dz, _, source, clear] = self.rays.group::<f64, 9>(ORIGIN, row);
+        let wo = hits.batch::<f64>(world, index(self.rays.at(HIT, row))).wo();
+        Leaving { origin: Vec3::new(x, y, z), dir: Vec3::new(dx, dy, dz), source, clear, wo }
     }
 }
 

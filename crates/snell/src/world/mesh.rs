@@ -3,13 +3,14 @@
 use super::solid::MeshSolids;
 use super::surface::{FLAT, Surfaces};
 use super::{NO_PRIMITIVE, NO_SOLID, Object, Solid, World};
+use crate::geometry::area::largest_angle;
 use crate::geometry::mesh::{MAX_SMOOTHED_VALENCE, NormalWeights};
 use crate::geometry::solid::{Options, repair, structure};
 use crate::geometry::{Affine, Bounds, TriangleMesh, Vec3, triangle};
 use crate::scene::{Integrator, LARGEST_NUMBER, Mesh, OpenMesh, Problem, Step, Warning, WarningCode, whole_map};
 use indexmap::IndexMap;
 
-/// Triangles on their way into a tree.
+/// Triangles on their way into a tree, each with its largest angle first ([`area`](crate::geometry::area)).
 #[derive(Default)]
 pub(super) struct Triangles {
     pub vertices: Vec<Vec3>,
@@ -141,9 +142,10 @@ impl World {
                 without_area += 1;
                 continue;
             }
+            let first_corner = largest_angle(placed.corners(f));
             let material = material_of(f, &placed);
             used[material as usize] = true;
-            triangles.faces.push(face.map(|v| v + base));
+            triangles.faces.push(turned(*face, first_corner).map(|v| v + base));
             surfaces.material_of.push(material);
             let [behind, front] = if self.materials[material as usize].is_transparent() {
                 sides.of(f, first_solid)
@@ -153,13 +155,13 @@ impl World {
             let row = surfaces.material_of.len() - 1;
             put_sparse(&mut surfaces.solid_of, row, behind, NO_SOLID);
             put_sparse(&mut surfaces.front_of, row, front, NO_SOLID);
-            let normals = corner_normals.as_ref().map(|normals| normals[f]);
+            let normals = corner_normals.as_ref().map(|normals| turned(normals[f], first_corner));
             let at = normals.map_or(FLAT, |_| surfaces.corner_normals.len() as u32);
             surfaces.corner_normals_of.push(at);
             surfaces.corner_normals.extend(normals);
             if textured {
                 put_sparse(&mut surfaces.corner_uvs_of, row, surfaces.corner_uvs.len() as u32, FLAT);
-                surfaces.corner_uvs.push(placed.corner_uvs(f).unwrap_or_default());
+                surfaces.corner_uvs.push(turned(placed.corner_uvs(f).unwrap_or_default(), first_corner));
             }
         }
         triangles.vertices.extend(&placed.vertices);
@@ -329,6 +331,12 @@ fn put_sparse(list: &mut Vec<u32>, at: usize, value: u32, usual: u32) {
         list.resize(at, usual);
         list.push(value);
     }
+}
+
+/// What belongs to the corners of a triangle, from one of them on.
+fn turned<T>(mut corners: [T; 3], first: usize) -> [T; 3] {
+    corners.rotate_left(first);
+    corners
 }
 
 /// The triangles that are written in the scene itself.

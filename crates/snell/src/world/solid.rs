@@ -4,7 +4,7 @@ use super::{NO_PRIMITIVE, World};
 use crate::film::Rgb;
 use crate::geometry::bvh::{Instance, Shapes};
 use crate::geometry::solid::{Component, EdgePlace, Found, Orientation, Report, structure};
-use crate::geometry::{Affine, Bounds, TriangleMesh, Vec3};
+use crate::geometry::{Affine, Bounds, TriangleMesh, Vec3, triangle};
 use crate::optics::dispersion::LINE_D_NM;
 use crate::optics::spectrum;
 use crate::scene::Integrator;
@@ -248,7 +248,13 @@ impl World {
             // The near root is before the point that is nearest to the centre.
             return t < (sphere.center - origin).dot(dir);
         }
-        let [a, b, c] = self.corners(primitive);
-        ((b - a).cross(c - a).dot(dir) < 0.0) != self.solids[solid as usize].inward
+        let inward = self.solids[solid as usize].inward;
+        let Some((placement, id)) = self.placement(primitive) else {
+            return triangle::is_front(origin, dir, self.tree.corners(primitive)) != inward;
+        };
+        // In the space of the model, where the ray has met it.
+        let (origin, dir) = (placement.to_model.apply(origin), placement.to_model.turn(dir));
+        let is_front = triangle::is_front(origin, dir, self.tree.model(placement.model).corners(id));
+        is_front != (inward != placement.to_world.mirrors())
     }
 }

@@ -2,7 +2,7 @@
 
 use super::World;
 use crate::film::Rgb;
-use crate::geometry::ray::{Shear, axes, main_axis};
+use crate::geometry::ray::{Heading, axes, main_axis};
 use crate::geometry::{Affine, Vec3, triangle};
 use crate::lanes::{Lanes, MAX_WIDTH, Mask};
 
@@ -77,8 +77,9 @@ impl Surfaces {
         let [a, b, c] = self.corner_normals.get(at as usize)?;
         // The barycentric weights do not depend on where the ray starts: start it at the hit.
         let k = axes(main_axis(dir));
-        let hit = triangle::intersect(point.permuted(k), &Shear::new(dir.permuted(k)), corners.map(|v| v.permuted(k)));
-        let smooth = *a * (1.0 - hit.beta - hit.gamma) + *b * hit.beta + *c * hit.gamma;
+        let (point, heading) = (point.permuted(k), Heading::new(dir.permuted(k)));
+        let [alpha, beta, gamma] = triangle::weights(point, &heading, corners.map(|v| v.permuted(k)));
+        let smooth = *a * alpha + *b * beta + *c * gamma;
         // Opposite normals at the corners can cancel, and a grazing ray can find no weights.
         (smooth.is_finite() && smooth != Vec3::default()).then_some(smooth)
     }

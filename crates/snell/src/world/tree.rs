@@ -36,15 +36,17 @@ impl World {
         }
         let (reach, farthest) = (everything.diagonal(), everything.farthest());
         self.clearance = MARGIN * (reach + farthest);
-        self.behind = 0.5 * MARGIN * reach;
-        // In the space of a model rays come from everywhere that any of its instances sees.
+        // In the space of a model rays come from everywhere that any of its instances sees, and start a little behind.
         let mut seen: Vec<Bounds> = parts.models.iter().map(|m| Bounds::of(m.vertices.iter().copied())).collect();
+        let mut shrunk = vec![0.0; parts.models.len()];
         let mut instances = Vec::with_capacity(parts.placed.len());
         let mut first = self.surfaces.material_of.len();
         for ((which, name, model, map), bounds) in parts.placed.iter().zip(boxes) {
             let instance = Instance::new(*model, map, first as u32, bounds, reach, farthest);
             let flat = || problem(*which, format!("an instance of `{name}` is scaled by 0"));
             let instance = instance.ok_or_else(flat)?;
+            self.clearance = self.clearance.max(instance.margin);
+            shrunk[*model] = instance.to_model.norm().max(shrunk[*model]);
             seen[*model] = seen[*model].union(Bounds::of(everything.corners().map(|c| instance.to_model.apply(c))));
             let count = self.models[*model].material_of.len();
             self.objects.push(Object { name: name.clone(), first: first as u32, count: count as u32 });
@@ -65,14 +67,16 @@ impl World {
                 return Err(problem(*which, "more than 4 billion triangles in all places together".to_owned()));
             }
         }
-        let models = parts.models.iter().zip(seen).map(|(Triangles { vertices, faces }, seen)| {
+        self.behind = 0.5 * self.clearance;
+        let models = parts.models.iter().zip(seen.iter().zip(shrunk)).map(|(Triangles { vertices, faces }, (seen, norm))| {
             let shapes = Shapes { vertices, faces, ..Shapes::default() };
-            Bvh::build(&shapes, vec![], seen.diagonal(), quality, threads)
+            let margin = (MARGIN * (seen.diagonal() + seen.farthest())).max(norm * self.clearance);
+            Bvh::build(&shapes, vec![], margin, quality, threads)
         });
         let models = models.collect();
         let touching = self.touching(&shapes, &instances);
         let shapes = Shapes { instances: &instances, ..shapes };
-        self.tree = Bvh::build(&shapes, models, reach, quality, threads);
+        self.tree = Bvh::build(&shapes, models, self.clearance, quality, threads);
         for (solid, touches) in self.solids.iter_mut().zip(touching) {
             solid.touches = touches;
         }

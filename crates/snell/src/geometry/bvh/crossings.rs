@@ -3,7 +3,7 @@
 use super::Bvh;
 use super::node::{Child, Kind, Node, WIDTH, plane};
 use super::primitives::{SPHERE, TRIANGLE};
-use crate::geometry::ray::{Shear, axes, inverse, main_axis};
+use crate::geometry::ray::{Heading, axes, inverse, main_axis};
 use crate::geometry::{Vec3, sphere, triangle};
 
 /// What a ray needs for every box and triangle.
@@ -14,10 +14,10 @@ struct Line {
     /// For each axis the inverse of the direction, and whether boxes are entered at their high side.
     inverse: [f64; 3],
     backward: [bool; 3],
-    /// Origin and shear along its main axis.
+    /// Origin and heading along its main axis.
     axes: [usize; 3],
     permuted: Vec3,
-    shear: Shear<f64>,
+    heading: Heading<f64>,
 }
 
 impl Line {
@@ -31,7 +31,7 @@ impl Line {
             backward: inverse.map(|i| i < 0.0),
             axes,
             permuted: origin.permuted(axes),
-            shear: Shear::new(dir.permuted(axes)),
+            heading: Heading::new(dir.permuted(axes)),
         }
     }
 
@@ -60,6 +60,40 @@ impl Bvh {
         let before = found.len();
         self.collect(&Line::new(origin, dir, range), 0, found);
         found[before..].sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    }
+
+    /// Appends every triangle whose box, with its margin, holds a point.
+    pub(crate) fn near(&self, point: Vec3, found: &mut Vec<u32>) {
+        self.collect_near(point, 0, found);
+    }
+
+    fn collect_near(&self, point: Vec3, first_id: u32, found: &mut Vec<u32>) {
+        let holds = |node: &Node, place: usize| {
+            (0..3).all(|axis| {
+                let [low, high] = [0, 1].map(|side| f64::from(node.planes[plane(axis, side)][place]));
+                (low..=high).contains(&point.component(axis))
+            })
+        };
+        let mut waiting = if self.nodes.is_empty() { vec![] } else { vec![Child::ROOT] };
+        while let Some(child) = waiting.pop() {
+            match child.kind() {
+                Kind::Node(number) => {
+                    let node = &self.nodes[number as usize];
+                    waiting.extend((0..WIDTH).filter(|&place| holds(node, place)).map(|place| node.child[place]));
+                }
+                Kind::Block(block) => {
+                    let triangles = &self.primitives.numbers[block.at + SPHERE * block.spheres..];
+                    let ids = &triangles[(TRIANGLE - 1) * block.triangles..][..block.triangles];
+                    found.extend(ids.iter().map(|&id| first_id + id as u32));
+                    for &number in &triangles[TRIANGLE * block.triangles..][..block.instances] {
+                        let instance = &self.instances[number as usize];
+                        let (model, first_id) = (&self.models[instance.model], first_id + instance.first);
+                        model.collect_near(instance.to_model.apply(point), first_id, found);
+                    }
+                }
+                Kind::Leaf(_) | Kind::Nothing => {}
+            }
+        }
     }
 
     fn collect(&self, line: &Line, first_id: u32, found: &mut Vec<(f64, u32)>) {
@@ -107,7 +141,7 @@ impl Bvh {
         for i in 0..block.triangles {
             let number = |column: usize| numbers[column * block.triangles + i];
             let corners = [0, 3, 6].map(|c| Vec3::new(number(c), number(c + 1), number(c + 2)).permuted(line.axes));
-            let hit = triangle::intersect::<f64>(line.permuted, &line.shear, corners);
+            let hit = triangle::intersect::<f64>(line.permuted, &line.heading, corners);
             offer(hit.t, hit.meets, number(TRIANGLE - 1));
         }
         let numbers = &numbers[TRIANGLE * block.triangles..][..block.instances];

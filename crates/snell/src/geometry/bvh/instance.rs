@@ -14,8 +14,10 @@ pub struct Instance {
     pub to_model: Affine,
     /// The id of its first triangle; the others follow in the model's order.
     pub first: u32,
-    /// Its box in the space of the tree.
+    /// Its box in the space of the tree, with [`margin`](Self::margin).
     pub bounds: Bounds,
+    /// How far from where it is a triangle may be hit, in the space of the tree: 32 times what the maps round.
+    pub margin: f64,
 }
 
 impl Instance {
@@ -30,9 +32,9 @@ impl Instance {
         let to_model = to_world.inverse()?;
         let moved = to_world.apply(Vec3::<f64>::default()).length();
         let margin = MARGIN * to_world.norm() * to_model.norm() * (reach + farthest + moved);
-        let margin = Vec3::new(margin, margin, margin);
-        let bounds = Bounds { min: bounds.min - margin, max: bounds.max + margin };
-        Some(Self { model, to_model, first, bounds })
+        let room = Vec3::new(margin, margin, margin);
+        let bounds = Bounds { min: bounds.min - room, max: bounds.max + room };
+        Some(Self { model, to_model, first, bounds, margin })
     }
 }
 
@@ -156,9 +158,9 @@ mod tests {
             let seen = everything.corners().map(|c| to_model.apply(c));
             let reach = Bounds::of(vertices).union(Bounds::of(seen)).diagonal();
             let shapes = Shapes { vertices: &vertices, faces: &[[0, 1, 2]], ..Shapes::default() };
-            let model = Bvh::build(&shapes, vec![], reach, Quality::Good, 1);
+            let model = Bvh::build(&shapes, vec![], MARGIN * reach, Quality::Good, 1);
             let shapes = Shapes { instances: &instances, ..Shapes::default() };
-            let tree = Bvh::build(&shapes, vec![model], everything.diagonal(), Quality::Good, 1);
+            let tree = Bvh::build(&shapes, vec![model], MARGIN * everything.diagonal(), Quality::Good, 1);
             prop_assert_eq!(nearest(&tree, origin, dir), nearest(&tree.flat(), origin, dir));
         }
     }
@@ -218,10 +220,10 @@ mod tests {
                 .collect();
             let model = |faces| {
                 let shapes = Shapes { vertices: &vertices, faces, ..Shapes::default() };
-                Bvh::build(&shapes, vec![], 4.0 * reach, Quality::Good, 1)
+                Bvh::build(&shapes, vec![], MARGIN * 4.0 * reach, Quality::Good, 1)
             };
             let shapes = Shapes { spheres: &spheres, vertices: &vertices, faces: own, instances: &instances };
-            let tree = Bvh::build(&shapes, vec![model(few), model(all)], reach, Quality::Good, 1);
+            let tree = Bvh::build(&shapes, vec![model(few), model(all)], MARGIN * reach, Quality::Good, 1);
             let flat = tree.clone().flat();
             let limits = [(0.0, f64::INFINITY), (1.0, 4.0), (2.0, 2.0), (0.0, f64::NAN), (1e-5, 8.0)];
             // In the plane of no triangle: seen edge on, rounding alone says whether it is hit.

@@ -28,16 +28,17 @@ use crate::threads;
 use node::{Child, Kind, Node};
 use primitives::Primitives;
 
-/// Relative size of the margin around each primitive: 2⁻⁴⁸ of the farthest distance from which a ray can come.
+/// Relative size of the margin around each primitive: 2⁻⁴⁸ of the farthest distance from which a ray can come, and of the
+/// largest coordinate.
 ///
 /// Where a coordinate is so large that this is lost beside it, the step to the next `f32` is larger: `reach·2⁻⁴⁸` is
 /// lost beside `v` only if `|v| > reach·2⁻²⁴`, and then that step, at least `|v|·2⁻²⁴`, is more.
 ///
 /// A primitive test places a hit within a few rounding errors, each `2⁻⁵³` of the distance between ray origin and
-/// primitive (sphere: the perpendicular `T − v·d`; triangle: the three vertices in ray space). Thirty-two of them are
-/// more than all of these together with those of the slab test. The textbook discriminant of near spheres errs by more;
-/// their boxes come with that margin ([`sphere::MARGIN`](super::sphere::MARGIN)).
-pub(crate) const MARGIN: f64 = 1.0 / (1u64 << 48) as f64;
+/// primitive (sphere: the perpendicular `T − v·d`; triangle: in its own box, with sixteen roundings of room). Thirty-two of
+/// them are more than all of these together with those of the slab test. The textbook discriminant of near spheres errs by
+/// more; their boxes come with that margin ([`sphere::MARGIN`](super::sphere::MARGIN)).
+pub const MARGIN: f64 = 1.0 / (1u64 << 48) as f64;
 
 /// Cache lines that are fetched ahead: a node has four, and a leaf of a mesh about six.
 const FETCHED: usize = 8;
@@ -74,11 +75,12 @@ pub struct TreeStatistics {
 }
 
 impl Bvh {
-    /// Builds the tree. `reach` is the largest distance between a ray's origin and a primitive.
+    /// Builds the tree. `margin` is the room that each box has around its primitives: at least [`MARGIN`] times the largest
+    /// distance between a ray's origin and a primitive.
     /// `models`: the trees that stand at the instances; they have none of their own. `threads`: 0 for as many as the
     /// machine has cores.
-    pub fn build(shapes: &Shapes<'_>, models: Vec<Self>, reach: f64, quality: Quality, threads: usize) -> Self {
-        let padded = |i| OuterBox::around(&shapes.bounds(i), reach * MARGIN);
+    pub fn build(shapes: &Shapes<'_>, models: Vec<Self>, margin: f64, quality: Quality, threads: usize) -> Self {
+        let padded = |i| OuterBox::around(&shapes.bounds(i), margin);
         let threads = if shapes.count() < WORTH_THREADS { 1 } else { threads.min(shapes.count() / WORTH_THREADS + 1) };
         let (tree, primitives) = threads::share(threads, |parallel| {
             let mut tree = build::build(shapes.count(), padded, quality, parallel);
@@ -155,7 +157,7 @@ impl Bvh {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::ray::{Shear, axes, main_axis};
+    use crate::geometry::ray::{Heading, axes, main_axis};
     use crate::geometry::{Bounds, Sphere, sphere, triangle};
     use crate::lanes::{ArrayLanes, Lanes};
     use proptest::prelude::*;
@@ -178,7 +180,7 @@ mod tests {
         } else {
             let k = axes(main_axis(dir));
             let corners = shapes.faces[id - shapes.spheres.len()].map(|v| shapes.vertices[v as usize].permuted(k));
-            let hit = triangle::intersect(origin.permuted(k), &Shear::new(dir.permuted(k)), corners);
+            let hit = triangle::intersect(origin.permuted(k), &Heading::new(dir.permuted(k)), corners);
             (hit.t, hit.meets)
         };
         (meets && t > 0.0).then_some(t)
@@ -211,7 +213,7 @@ mod tests {
         let hits = (0..shapes.count()).filter_map(|id| Some((alone(shapes, id, origin, dir)?, id)));
         let nearest = hits.min_by(|a, b| a.partial_cmp(b).unwrap());
         let everything = (0..shapes.count()).map(|i| shapes.bounds(i)).fold(Bounds::of([origin]), Bounds::union);
-        let tree = Bvh::build(shapes, vec![], everything.diagonal(), Quality::Good, 1);
+        let tree = Bvh::build(shapes, vec![], MARGIN * everything.diagonal(), Quality::Good, 1);
         let limit = nearest.map_or(f64::INFINITY, |(t, _)| t.next_up());
         for (t_max, copies) in [(f64::INFINITY, 1), (f64::INFINITY, PACKET), (limit, 1), (limit, PACKET)] {
             let found = [

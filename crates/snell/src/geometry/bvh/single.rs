@@ -5,7 +5,7 @@ use super::build::MAX_DEPTH;
 use super::node::{Block, Child, Node, WIDTH, plane};
 use super::packet::{Octant, Packet};
 use super::primitives::{SPHERE, TRIANGLE};
-use crate::geometry::ray::Shear;
+use crate::geometry::ray::Heading;
 use crate::geometry::{Vec3, sphere, triangle};
 use crate::lanes::{Lanes, Mask};
 
@@ -135,14 +135,17 @@ impl Bvh {
         if triangles > 0 {
             let k = octant.axes;
             let origin = Packet::one(&packet.origin, ray, k);
-            let (x, y) = (L::splat(packet.shear[0][ray]), L::splat(packet.shear[1][ray]));
-            let shear = Shear(Vec3::new(x, y, L::splat(packet.inv_dir[k[2]][ray])));
+            let heading = Heading {
+                dir: Packet::one(&packet.dir, ray, k),
+                inverse: Packet::one(&packet.inv_dir, ray, k),
+                shear: [L::splat(packet.shear[0][ray]), L::splat(packet.shear[1][ray])],
+            };
             let numbers = &numbers[SPHERE * spheres..];
             for start in (0..triangles).step_by(L::WIDTH) {
                 let a = vectors(&numbers[start..], triangles, k);
                 let b = vectors(&numbers[start..], triangles, [k[0] + 3, k[1] + 3, k[2] + 3]);
                 let c = vectors(&numbers[start..], triangles, [k[0] + 6, k[1] + 6, k[2] + 6]);
-                let hit = triangle::intersect(origin, &shear, [a, b, c]);
+                let hit = triangle::intersect(origin, &heading, [a, b, c]);
                 let ids = &numbers[(TRIANGLE - 1) * triangles + start..];
                 let leaves = L::load(ids).eq(L::splat(packet.source[ray]));
                 let meets = hit.meets & !leaves & L::Mask::first(triangles - start);

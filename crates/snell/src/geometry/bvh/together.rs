@@ -11,7 +11,7 @@ use super::nearest::Nearest;
 use super::node::{self, Block, Child, Kind, Node, plane};
 use super::packet::{Octant, Packet, SIZE, groups};
 use super::primitives::{SPHERE, TRIANGLE};
-use crate::geometry::ray::Shear;
+use crate::geometry::ray::Heading;
 use crate::geometry::{Vec3, triangle};
 use crate::lanes::{Kernel, Lanes, Mask};
 
@@ -246,14 +246,17 @@ impl Bvh {
             }
             if triangles > 0 {
                 let origin = Packet::vector(&packet.origin, start, k);
-                let (x, y) = (L::load(&packet.shear[0][start..]), L::load(&packet.shear[1][start..]));
-                let shear = Shear(Vec3::new(x, y, L::load(&packet.inv_dir[k[2]][start..])));
+                let heading = Heading {
+                    dir: Packet::vector(&packet.dir, start, k),
+                    inverse: Packet::vector(&packet.inv_dir, start, k),
+                    shear: [L::load(&packet.shear[0][start..]), L::load(&packet.shear[1][start..])],
+                };
                 let numbers = &numbers[SPHERE * spheres..];
                 for i in 0..triangles {
                     let a = vector(numbers, triangles, i, k);
                     let b = vector(numbers, triangles, i, [k[0] + 3, k[1] + 3, k[2] + 3]);
                     let c = vector(numbers, triangles, i, [k[0] + 6, k[1] + 6, k[2] + 6]);
-                    let found = triangle::intersect(origin, &shear, [a, b, c]);
+                    let found = triangle::intersect(origin, &heading, [a, b, c]);
                     nearest.keep(found.t, found.meets, numbers[(TRIANGLE - 1) * triangles + i]);
                 }
             }

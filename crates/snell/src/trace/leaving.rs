@@ -1,0 +1,88 @@
+//! The place that a ray leaves, and what of it a ray that has just left does not meet.
+//!
+//! A computed hit is off the plane of its face by some roundings. So near an edge a ray may start a little beyond the
+//! neighbouring face, and would meet it at a distance of nothing: a wall would shade itself along the edges of its triangles, and a
+//! mirror show itself. To leave out the face that a ray comes from is not enough, and to leave out all that is near would let light
+//! through the corners of a room.
+//!
+//! ```text
+//!        convex                 concave           What a ray meets while it is within the clearance of the plane
+//!       n↑   ↗ d                n↑  ↗ d │         of its face is looked at. It is a real obstacle only if
+//!   ─────┴──●╲                 ────┴──●┤          it rises above that plane, as the wall on the right does and
+//!    source   ╲ neighbour       source │ wall     the neighbour on the left does not; and where the place itself
+//!              ╲                       │          lies on the obstacle, only if the ray goes to its other side.
+//! ```
+//!
+//! "Within" is [`World::clearance`](crate::world::World), what a hit may be off. Everything farther away blocks light.
+
+use crate::geometry::Vec3;
+use crate::lanes::{Lanes, index};
+use crate::world::World;
+
+/// How far a ray goes that leaves a face, at an angle of this cosine to its normal, until it is clear of its plane.
+#[inline(always)]
+pub(super) fn until_clear<L: Lanes>(world: &World, cos: L) -> L {
+    L::splat(world.clearance) / cos.max(-cos)
+}
+
+/// A ray that leaves a surface, or the eye.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Leaving {
+    pub origin: Vec3,
+    /// Of unit length.
+    pub dir: Vec3,
+    /// The primitive that it leaves, −1 for none.
+    pub source: f64,
+    /// Where it is clear of the plane of that primitive: [`until_clear`], 0 for none.
+    pub clear: f64,
+    /// Towards where the light came from that it carries on or answers.
+    pub wo: Vec3,
+}
+
+impl Leaving {
+    /// A ray of a generation: `mirrored` or refracted at the surface that it leaves, as the mirror of that would have it.
+    pub fn ray(world: &World, origin: Vec3, dir: Vec3, source: f64, clear: f64, mirrored: bool) -> Self {
+        let mut leaving = Self { origin, dir, source, clear, wo: -dir };
+        if mirrored && source >= 0.0 {
+            let n = leaving.normal(world);
+            leaving.wo = n * (2.0 * n.dot(dir)) - dir;
+        }
+        leaving
+    }
+
+    /// Does it really meet a primitive that the tests find at `t`, perhaps behind its origin?
+    pub fn meets(&self, world: &World, primitive: u32, t: f64) -> bool {
+        if t > self.clear || self.source < 0.0 {
+            return t > 0.0;
+        }
+        if f64::from(primitive) == self.source {
+            // The far wall of a sphere that it leaves inward.
+            return t > 0.0 && !world.starts_at(primitive as usize, self.origin, self.dir, t);
+        }
+        if let Some(sphere) = world.spheres.get(primitive as usize) {
+            // A sphere that it touches bends away: it is met by all that goes inward.
+            return t > 0.0 || (self.origin - sphere.center).dot(self.dir) < 0.0;
+        }
+        let (corners, n) = (world.corners(primitive as usize), self.normal(world));
+        let up = if n.dot(self.dir) < 0.0 { -n } else { n };
+        if corners.iter().all(|&corner| up.dot(corner - self.origin) <= world.clearance) {
+            return false;
+        }
+        let other = world.geometric_normal(primitive as usize, self.origin);
+        if other.dot(self.origin - corners[0]).abs() > world.clearance {
+            return t > 0.0;
+        }
+        (other.dot(self.dir) > 0.0) != (other.dot(self.wo) > 0.0)
+    }
+
+    /// Does anything up to `distance` really stand in its way, where it is not yet clear?
+    pub fn is_blocked(&self, world: &World, distance: f64) -> bool {
+        let (mut crossings, end) = (Vec::new(), self.clear.min(distance));
+        world.tree.crossings(self.origin, self.dir, [-world.behind, end], &mut crossings);
+        crossings.into_iter().any(|(t, primitive)| self.meets(world, primitive, t))
+    }
+
+    fn normal(&self, world: &World) -> Vec3 {
+        world.geometric_normal(index(self.source), self.origin)
+    }
+}
