@@ -91,8 +91,9 @@ fn settings_reach_the_picture() {
         ("lecture/diamond", &["lecture/default", "--set", "material.glass.eta=2.42"][..]),
         ("lecture/no-shadows", &["lecture/default", "--shadows", "off"]),
         ("lecture/diamond-depth-2", &["lecture/diamond", "--depth", "2"]),
-        ("lecture/wide", &["lecture/default", "--set", "camera.near=-4"]),
-        ("lecture/quarter", &["lecture/default", "--set", "camera.bounds=[-2, 0, -2, 0]"]),
+        ("lecture/wide", &["lecture/diamond", "--set", "camera.near=-4"]),
+        ("lecture/quarter", &["lecture/diamond", "--set", "camera.bounds=[-2, 0, -2, 0]"]),
+        ("study/quarter", &["lecture/default", "--set", "camera.bounds=[-2, 0, -2, 0]"]),
     ] {
         picture("a.npy", &[built_in]);
         picture("b.npy", changed);
