@@ -333,7 +333,7 @@ class Scene(Value):
 
         Examples
         --------
-        >>> found = Scene.load("study/quarter").find("green")
+        >>> found = Scene.load("study/quarter-view").find("green")
         >>> found.paths[0]
         ('camera → glass(refract) → green', 12448)
         """

@@ -26,7 +26,7 @@ scenes![
     "lecture/diamond-depth-6",
     "lecture/wide",
     "lecture/quarter",
-    "study/quarter",
+    "study/quarter-view",
     "gallery/ball",
     "gallery/ice",
     "gallery/prism",
