@@ -333,7 +333,7 @@ class Scene(Value):
 
         Examples
         --------
-        >>> found = Scene.load("lecture/quarter").find("green")
+        >>> found = Scene.load("study/quarter-view").find("green")
         >>> found.paths[0]
         ('camera → glass(refract) → green', 12448)
         """
@@ -386,7 +386,7 @@ class Scenes(Mapping[str, Scene]):
     --------
     >>> import snell
     >>> len(snell.scenes), "gallery/ball" in snell.scenes
-    (24, True)
+    (25, True)
     """
 
     _names = tuple(name for name, _ in _native.builtin_scenes())

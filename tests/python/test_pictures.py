@@ -213,9 +213,9 @@ def test_what_rendering_comes_upon_is_said() -> None:
 
 
 def test_sightings_are_those_of_the_command_line() -> None:
-    found = snell.scenes["lecture/default"].replace(camera=snell.scenes["lecture/quarter"].camera).find("green")
+    found = snell.scenes["lecture/default"].replace(camera=snell.scenes["study/quarter-view"].camera).find("green")
     assert found.mask.shape == (512, 512)
-    said = command("explain", "lecture/quarter", "--find", "green")
+    said = command("explain", "study/quarter-view", "--find", "green")
     assert all(f"{pixels:9} px  {path}\n" in said for path, pixels in found.paths[:5])
     assert f"{(found.mask > 0).sum():9} px  together" in said
 

@@ -25,7 +25,7 @@ fn built_in_scenes_render_from_anywhere_and_can_be_saved() {
     let list = stdout(&run(at, &["scenes"]));
     let names: Vec<&str> =
         list.lines().filter_map(|l| l.split_whitespace().next()).filter(|n| n.contains('/')).collect();
-    assert_eq!(names.len(), 24, "15 of the lecture, 9 of the gallery: {list}");
+    assert_eq!(names.len(), 25, "15 of the lecture, 1 to study, 9 of the gallery: {list}");
     render(at, &[&names, TINY, &["-o", "out/"]].concat());
     assert_eq!(fs::read_dir(at.join("out")).unwrap().count(), names.len());
 
@@ -40,7 +40,7 @@ fn built_in_scenes_render_from_anywhere_and_can_be_saved() {
 #[test]
 fn scenes_say_what_to_look_at() {
     let folder = tempfile::tempdir().unwrap();
-    for line in stdout(&run(folder.path(), &["scenes"])).lines().take(15) {
+    for line in stdout(&run(folder.path(), &["scenes"])).lines().take(16) {
         let name = line.split_whitespace().next().unwrap();
         let text = stdout(&run(folder.path(), &["info", name, "--scene"]));
         assert!(text.starts_with("# ") && text.contains("# Look"), "{name} starts with no comment");
@@ -91,8 +91,9 @@ fn settings_reach_the_picture() {
         ("lecture/diamond", &["lecture/default", "--set", "material.glass.eta=2.42"][..]),
         ("lecture/no-shadows", &["lecture/default", "--shadows", "off"]),
         ("lecture/diamond-depth-2", &["lecture/diamond", "--depth", "2"]),
-        ("lecture/wide", &["lecture/default", "--set", "camera.near=-4"]),
-        ("lecture/quarter", &["lecture/default", "--set", "camera.bounds=[-2, 0, -2, 0]"]),
+        ("lecture/wide", &["lecture/diamond", "--set", "camera.near=-4"]),
+        ("lecture/quarter", &["lecture/diamond", "--set", "camera.bounds=[-2, 0, -2, 0]"]),
+        ("study/quarter-view", &["lecture/default", "--set", "camera.bounds=[-2, 0, -2, 0]"]),
     ] {
         picture("a.npy", &[built_in]);
         picture("b.npy", changed);

@@ -53,6 +53,9 @@ fn questions_are_answered() {
     assert!(less.contains("with material.glass.eta=1.0:") && less.contains("before"), "{less}");
     let found = said(&["lecture/default", "--find", "green", "--size", "64x64"]);
     assert!(found.contains(" px  camera → green\n") && found.contains("camera → glass(refract) → green"), "{found}");
+    let set = ["lecture/default", "--find", "green", "--size", "64x64", "--set", "material.glass.eta=2.42"];
+    assert_eq!(said(&set), said(&["lecture/diamond", "--find", "green", "--size", "64x64"]), "of the scene as set");
+    assert_ne!(said(&set), found);
     let few = said(&["gallery/bubbles", "302,340", "--top", "3", "--depth", "2"]);
     assert!(few.contains("more rays; --top N and --depth N show more"), "{few}");
 }

@@ -1,10 +1,10 @@
-//! The scenes that every Snell carries: all pictures of the lecture, and the gallery.
+//! The scenes that every Snell carries: all pictures of the lecture, a view to study, and the gallery.
 
 use crate::report::{Report, Source, nearest};
 
 macro_rules! scenes {
     ($($name:literal),* $(,)?) => {
-        /// Names and texts, in the order of the lecture, then the gallery.
+        /// Names and texts, in the order of the lecture, then what is studied, then the gallery.
         pub const SCENES: &[(&str, &str)] =
             &[$(($name, include_str!(concat!("../../../scenes/", $name, ".toml")))),*];
     };
@@ -26,6 +26,7 @@ scenes![
     "lecture/diamond-depth-6",
     "lecture/wide",
     "lecture/quarter",
+    "study/quarter-view",
     "gallery/ball",
     "gallery/ice",
     "gallery/prism",

@@ -1,4 +1,4 @@
-//! What must be visible in the pictures of the gallery, as their comments say.
+//! What must be visible in the pictures of the gallery, as their comments say, and what none of the built-in scenes may lose.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
@@ -9,6 +9,9 @@ use snell::film::Rgb;
 use snell::render::{Options, render};
 use snell::trace::{Node, RayKind, RayTree};
 use snell::world::World;
+use snell_formats::Source;
+use snell_formats::builtin::{SCENES, description};
+use snell_formats::scene_file::{Syntax, parse};
 use snell_test_scenes::lecture;
 
 /// The objects that a pixel of a built-in scene shows, from the strongest refracted or direct contribution on.
@@ -75,6 +78,26 @@ fn the_prism_of_the_gallery_shows_the_colours_in_order() {
     assert!(blue + 5 < green && green + 5 < red, "{blue} {green} {red}");
     let violet = row[..blue].iter().filter(|c| c.b > c.r && c.r > c.g && c.b > 0.3).count();
     assert!(violet > 3, "beyond blue there is violet");
+}
+
+/// What is not followed weighs at most 1 % of a pixel on average, or the scene's comment names W202 and says why.
+#[test]
+fn built_in_scenes_lose_little_light_or_say_so() {
+    let mut told = Vec::new();
+    for (name, text) in SCENES {
+        let source = Source::new(*name, *text);
+        let mut scene = parse(&source, Syntax::Toml).unwrap();
+        // The average over every eighth column and row is that of the whole picture but for 6 % of itself.
+        scene.render.size = scene.render.size.map(|n| n / 8);
+        let rendered = render(&World::new(&scene).unwrap(), &Options::default()).unwrap();
+        let pixels = u64::from(scene.render.size[0]) * u64::from(scene.render.size[1]);
+        let (share, says) = (rendered.statistics.lost.share(pixels), description(text).join(" ").contains("W202"));
+        assert_eq!(share > 0.01, says, "{name}: {share}");
+        if says {
+            told.push(*name);
+        }
+    }
+    assert_eq!(told, ["lecture/diamond-depth-1"]);
 }
 
 /// A built-in scene at this size, one sample for each pixel, and what the pixels show most.

@@ -19,8 +19,11 @@ use std::path::Path;
 const VIEWER: &str = include_str!("../../assets/snell-viewer.js");
 
 pub fn run(args: &ExplainArgs) -> Outcome {
-    // What changes the scene for good; what `--set` and `--without` ask is what would be if.
-    let options = LoadOptions { set: Vec::new(), ..LoadOptions::from(&args.reading) };
+    let mut options = LoadOptions::from(&args.reading);
+    if args.find.is_none() {
+        // Of a pixel, `--set` and `--without` ask what would be if.
+        options.set.clear();
+    }
     let mut loaded = load(&args.scene, &options).or_fail(SCENE)?;
     settings(&mut loaded, args);
     let world = loaded.world().or_fail(SCENE)?;
