@@ -1,7 +1,7 @@
 # Everything goes through these. What they need is installed without asking; what cannot be is named.
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test fuzz bench bench-peers pictures notebooks clean
+.PHONY: help demo test soak fuzz bench bench-peers pictures notebooks clean
 
 help: ## This list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-11s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -11,6 +11,9 @@ demo: ## Build Snell, render the default scene, say where the picture is
 
 test: ## Everything that CI runs
 	@scripts/test.sh
+
+soak: ## Attack triangles with rays for ten minutes (SNELL_SOAK_SECONDS=3600 make soak for longer)
+	@scripts/soak.sh
 
 fuzz: ## Fuzz every reader for a minute each (SECONDS_EACH=600 make fuzz for longer)
 	@scripts/fuzz.sh

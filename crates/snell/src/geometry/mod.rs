@@ -8,6 +8,8 @@ pub(crate) mod exact;
 pub mod make;
 pub mod mesh;
 pub mod ray;
+#[cfg(test)]
+mod soak;
 pub mod solid;
 pub mod sphere;
 pub mod transform;

@@ -146,6 +146,7 @@ impl Generation for CameraRays<'_> {
             pixel: L::ramp(start),
             medium: self.media.lanes(0, start),
             band: L::splat(f64::from(WHITE)),
+            back: L::splat(0.0),
         }
     }
 

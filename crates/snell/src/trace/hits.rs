@@ -271,6 +271,12 @@ impl<L: Lanes> Batch<'_, L> {
         self.found(POINT)
     }
 
+    /// How far the rays came.
+    #[inline(always)]
+    pub fn t(&self) -> L {
+        self.hits.found.lanes(T, self.start)
+    }
+
     /// Towards where the ray came from.
     #[inline(always)]
     pub fn wo(&self) -> Vec3<L> {

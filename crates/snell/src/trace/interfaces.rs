@@ -12,7 +12,7 @@
 use super::hits::{Face, Hits, SKY};
 use super::leaving::Leaving;
 use super::media::{Media, OUTSIDE};
-use super::queue::{Generation, RayKind};
+use super::queue::{Generation, Load, RayKind};
 use super::statistics::{Overlap, Statistics};
 use crate::film::Rgb;
 use crate::geometry::bvh::{PACKET, Packet};
@@ -109,7 +109,7 @@ impl<G: Generation> Kernel for FindInterfaces<'_, '_, G> {
             ways.mirrored = 0;
             for ray in ones(all) {
                 ways.mirrored |= u64::from(rays.kind(first + ray) == RayKind::Mirror) << ray;
-                ways.start(world, packet, ray);
+                ways.start(world, packet, ray, &rays.loads(first + ray));
             }
             let (mut open, mut met) = (all, 0);
             while open != 0 {
@@ -133,6 +133,15 @@ impl<G: Generation> Kernel for FindInterfaces<'_, '_, G> {
                     statistics.stray.add(rays.pixel(first + ray));
                 }
                 (packet.t[ray], packet.primitive[ray]) = (f64::INFINITY, SKY);
+            }
+            for ray in ones(met & ways.mirrored) {
+                // From the place itself; but in a corner, where that may be behind what is met, all is as it was asked for.
+                let (origin, dir) = rays.ways::<f64>(first + ray);
+                let t = world.meets_at(index(packet.primitive[ray]), origin, dir, packet.t[ray]);
+                if let Some(t) = t.filter(|&t| t > 8.0 * world.clearance) {
+                    packet.start_at(ray, origin);
+                    packet.t[ray] = t;
+                }
             }
             let seen = if world.background.is_black() { met } else { all };
             for ray in ones(seen) {
@@ -195,7 +204,7 @@ impl Ways {
         }
     }
 
-    fn start(&mut self, world: &World, packet: &mut Packet, ray: usize) {
+    fn start(&mut self, world: &World, packet: &mut Packet, ray: usize, load: &Load<f64>) {
         (self.after[ray], self.outer[ray], self.since[ray]) = (self.before[ray], 1.0, 0.0);
         for channel in &mut self.kept {
             channel[ray] = 1.0;
@@ -204,6 +213,10 @@ impl Ways {
         // At an edge a ray may have crossed a face by rounding a little before it starts.
         let anywhere = packet.source[ray] < 0.0 && index(self.before[ray]) as u32 == OUTSIDE;
         packet.t_min[ray] = if anywhere { 0.0 } else { -world.behind };
+        if self.mirrored >> ray & 1 == 1 {
+            let Leaving { origin, wo, .. } = self.leaving(world, packet, ray);
+            packet.start_at(ray, origin + wo * load.back);
+        }
     }
 
     fn leaving(&self, world: &World, packet: &Packet, ray: usize) -> Leaving {
@@ -269,7 +282,11 @@ impl Ways {
         let Place { after, up_to, face, enters } = place;
         let is_clear = t > self.clear[ray].max(self.since[ray] + world.clearance);
         if after == before && !enters && is_clear && !media.contains(before, solid) {
-            statistics.stray.add(pixel);
+            // Along the rim of a solid a ray meets a way out and a way in, in one place and in any order.
+            match self.rim(world, packet, ray, solid) {
+                Some(up_to) => return Met::Nothing(up_to),
+                None => statistics.stray.add(pixel),
+            }
         }
         if media.top(before) == media.top(after) {
             self.before[ray] = f64::from(after);
@@ -318,14 +335,24 @@ impl Ways {
         if let Some(&found) = self.crossings.iter().find(opaque) {
             return Some(found);
         }
-        let mut crossed = |face: &(f64, u32)| {
-            let &(t, primitive) = face;
-            let leads_out = media.contains(place.after, world.solid_of(primitive as usize));
-            if !leads_out && t <= leaving.clear && !leaving.meets(world, primitive, t) {
-                return false;
-            }
-            let next = media.cross(place.after, face.1, origin, dir, face.0);
-            place.up_to = place.up_to.max(face.0);
+        self.crossings.retain(|&(t, primitive)| {
+            let starts = f64::from(primitive) == source && primitive as usize >= world.spheres.len();
+            let leads_out = media.contains(before, world.solid_of(primitive as usize));
+            !starts && (leads_out || leaving.meets(world, primitive, t))
+        });
+        // Along the rim of a solid there is a way in and a way out in one place, which is neither.
+        let enters = |&(t, primitive): &(f64, u32)| {
+            let solid = world.solid_of(primitive as usize);
+            (solid, solid != NO_SOLID && world.enters(primitive as usize, solid, origin, dir, t))
+        };
+        let ways: Vec<_> = self.crossings.iter().map(enters).collect();
+        self.crossings.retain(|face| {
+            let (solid, way) = enters(face);
+            !ways.contains(&(solid, !way))
+        });
+        let mut crossed = |&(t, primitive): &(f64, u32)| {
+            let next = media.cross(place.after, primitive, origin, dir, t);
+            place.up_to = place.up_to.max(t);
             std::mem::replace(&mut place.after, next) != next
         };
         self.crossings.retain(|face| crossed(face));
@@ -339,6 +366,16 @@ impl Ways {
             place.enters = world.enters(primitive as usize, world.solid_of(primitive as usize), origin, dir, t);
         }
         None
+    }
+
+    /// The farthest face of a solid in the place of the hit, if there are ways in among them.
+    fn rim(&mut self, world: &World, packet: &Packet, ray: usize, solid: u32) -> Option<f64> {
+        let ((origin, dir), t) = (packet.ways::<f64>(ray), packet.t[ray]);
+        self.crossings.clear();
+        world.tree.crossings(origin, dir, [t - world.clearance, t + world.clearance], &mut self.crossings);
+        self.crossings.retain(|&(_, primitive)| world.solid_of(primitive as usize) == solid);
+        let way_in = |&(t, primitive): &(f64, u32)| world.enters(primitive as usize, solid, origin, dir, t);
+        self.crossings.iter().any(way_in).then(|| self.crossings.iter().fold(t, |up_to, &(t, _)| up_to.max(t)))
     }
 
     /// Takes away what the medium absorbs up to a distance.

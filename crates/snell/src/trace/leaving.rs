@@ -1,9 +1,9 @@
 //! The place that a ray leaves, and what of it a ray that has just left does not meet.
 //!
 //! A computed hit is off the plane of its face by some roundings. So near an edge a ray may start a little beyond the
-//! neighbouring face, and would meet it at a distance of nothing: a wall would shade itself along the edges of its triangles, and a
-//! mirror show itself. To leave out the face that a ray comes from is not enough, and to leave out all that is near would let light
-//! through the corners of a room.
+//! neighbouring face. It would meet it at a distance of nothing, and a wall would shade itself along the edges of its triangles; or it
+//! would pass behind it, out of the corner of a room. To leave out the face that a ray comes from is not enough, and to leave
+//! out all that is near would let light through.
 //!
 //! ```text
 //!        convex                 concave           What a ray meets while it is within the clearance of the plane
@@ -14,6 +14,10 @@
 //! ```
 //!
 //! "Within" is [`World::clearance`](crate::world::World), what a hit may be off. Everything farther away blocks light.
+//!
+//! And what is in the way of a ray that goes back, to a light or from a mirror, is asked from a place a little [`back`] on the
+//! way on which the surface was reached: there it is surely on the right side of whatever else is there. Distances and directions stay
+//! those of the place itself.
 
 use crate::geometry::Vec3;
 use crate::lanes::{Lanes, index};
@@ -23,6 +27,13 @@ use crate::world::World;
 #[inline(always)]
 pub(super) fn until_clear<L: Lanes>(world: &World, cos: L) -> L {
     L::splat(world.clearance) / cos.max(-cos)
+}
+
+/// How far back on the way of length `t` to a surface a place is that is surely in front of it, by more than a hit may be off. In a
+/// corner ways are short.
+#[inline(always)]
+pub(super) fn back<L: Lanes>(world: &World, t: L) -> L {
+    L::splat(4.0 * world.clearance).min(t * L::splat(0.5))
 }
 
 /// A ray that leaves a surface, or the eye.
@@ -75,11 +86,11 @@ impl Leaving {
         (other.dot(self.dir) > 0.0) != (other.dot(self.wo) > 0.0)
     }
 
-    /// Does anything up to `distance` really stand in its way, where it is not yet clear?
+    /// Does anything up to `distance` through which no light goes really stand in its way, where it is not yet clear?
     pub fn is_blocked(&self, world: &World, distance: f64) -> bool {
         let (mut crossings, end) = (Vec::new(), self.clear.min(distance));
         world.tree.crossings(self.origin, self.dir, [-world.behind, end], &mut crossings);
-        crossings.into_iter().any(|(t, primitive)| self.meets(world, primitive, t))
+        crossings.into_iter().any(|(t, primitive)| world.blocks_light(primitive) && self.meets(world, primitive, t))
     }
 
     fn normal(&self, world: &World) -> Vec3 {

@@ -81,7 +81,8 @@ pub(crate) fn exit_ray<L: Lanes>(blend: Blend, hits: &Batch<'_, L>) -> (L::Mask,
 fn child<L: Lanes>(hits: &Batch<'_, L>, origin: Vec3<L>, dir: Vec3<L>, weight: Weight<L>) -> Rays<L> {
     let (source, parent, pixel) = (hits.primitive(), hits.ray(), hits.pixel());
     let (medium, band) = (L::splat(f64::from(OUTSIDE)), L::splat(f64::from(WHITE)));
-    Rays { origin, dir, load: Load { weight, t_min: L::splat(T_MIN), source, parent, pixel, medium, band } }
+    let (t_min, back) = (L::splat(T_MIN), L::splat(0.0));
+    Rays { origin, dir, load: Load { weight, t_min, source, parent, pixel, medium, band, back } }
 }
 
 /// What the local colour is multiplied by.

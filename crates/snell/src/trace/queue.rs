@@ -93,6 +93,9 @@ pub(crate) struct Load<L: Lanes> {
     pub parent: L,
     /// Number of the pixel within the tile.
     pub pixel: L,
+    /// With real optics, how far in front of the surface that a mirrored ray leaves it is asked what it meets:
+    /// [`back`](super::leaving::back).
+    pub back: L,
     /// In which solids the ray is: a handle of [`Media`](super::media::Media).
     pub medium: L,
     /// Which of the bands of light; [`WHITE`](super::media::WHITE) for all of it.
@@ -104,8 +107,8 @@ pub(crate) struct Load<L: Lanes> {
 /// Whole numbers travel as `f64`, in which every `u32` is exact, so that all columns are of one kind.
 #[derive(Debug, Default)]
 pub(crate) struct RayQueue {
-    /// Origin, direction, attenuation, factor, `t_min`, source, parent, pixel, medium, band.
-    rays: Columns<18>,
+    /// Origin, direction, attenuation, factor, `t_min`, source, parent, pixel, medium, band, `back`.
+    rays: Columns<19>,
     /// How many mirror rays stand in front.
     mirror: usize,
 }
@@ -127,10 +130,10 @@ impl RayQueue {
             return;
         }
         let Rays { origin: o, dir: d, load } = *rays;
-        let Load { weight: Weight { attenuation: a, factor: f }, t_min, source, parent, pixel, medium, band } = load;
+        let Load { weight: Weight { attenuation: a, factor: f }, t_min, source, parent, pixel, medium, band, back } = load;
         let before = self.len();
         let row =
-            [o.x, o.y, o.z, d.x, d.y, d.z, a.r, a.g, a.b, f.r, f.g, f.b, t_min, source, parent, pixel, medium, band];
+            [o.x, o.y, o.z, d.x, d.y, d.z, a.r, a.g, a.b, f.r, f.g, f.b, t_min, source, parent, pixel, medium, band, back];
         self.rays.push(mask, row);
         self.count(kind, self.len() - before);
     }
@@ -181,9 +184,9 @@ impl Generation for RayQueue {
 
     #[inline(always)]
     fn loads<L: Lanes>(&self, start: usize) -> Load<L> {
-        let [r, g, b, fr, fg, fb, t_min, source, parent, pixel, medium, band] = self.rays.group(LOAD, start);
+        let [r, g, b, fr, fg, fb, t_min, source, parent, pixel, medium, band, back] = self.rays.group(LOAD, start);
         let weight = Weight { attenuation: Rgb::new(r, g, b), factor: Rgb::new(fr, fg, fb) };
-        Load { weight, t_min, source, parent, pixel, medium, band }
+        Load { weight, t_min, source, parent, pixel, medium, band, back }
     }
 
     #[inline(always)]

@@ -1,7 +1,7 @@
 //! Writes down the rays of a pixel while the engine traces them: there is no second tracer.
 
 use super::hits::{Batch, Hits};
-use super::leaving::{Leaving, until_clear};
+use super::leaving::{Leaving, back, until_clear};
 use super::lecture::T_MIN;
 use super::media::{Media, WHITE};
 use super::observer::Observer;
@@ -139,8 +139,11 @@ fn between(world: &World, hit: &Batch<'_, f64>, wi: Vec3, distance: f64) -> Vec<
         return Vec::new();
     }
     let real_optics = world.render.integrator == Integrator::Whitted;
-    let (origin, source) = (hit.point(), hit.primitive());
-    let clear = if real_optics { until_clear(world, hit.geometric_normal().dot(wi)) } else { T_MIN };
+    let (mut origin, source, mut clear) = (hit.point(), hit.primitive(), T_MIN);
+    if real_optics {
+        origin = origin + hit.wo() * back(world, hit.t());
+        clear = until_clear(world, hit.geometric_normal().dot(wi));
+    }
     let leaving = Leaving { origin, dir: wi, source, clear, wo: hit.wo() };
     let mut crossings = Vec::new();
     world.tree.crossings(origin, wi, [-world.behind, distance], &mut crossings);
@@ -153,11 +156,8 @@ fn between(world: &World, hit: &Batch<'_, f64>, wi: Vec3, distance: f64) -> Vec<
         let enters = sphere.is_none_or(|sphere| t < (sphere.center - origin).dot(wi));
         t > T_MIN && t < distance && f64::from(primitive) != source && enters
     });
-    let tinted = world.render.shadows == Shadows::Tinted;
-    let blocks = |primitive: u32| {
-        !tinted || (world.solid_of(primitive as usize) == NO_SOLID && !world.is_thin(primitive as usize))
-    };
-    let end = crossings.iter().position(|&(_, primitive)| blocks(primitive)).map_or(crossings.len(), |at| at + 1);
+    let blocks = |&(_, primitive): &(f64, u32)| world.blocks_light(primitive);
+    let end = crossings.iter().position(blocks).map_or(crossings.len(), |at| at + 1);
     crossings.truncate(end);
     crossings.into_iter().map(|(t, primitive)| (primitive, t)).collect()
 }

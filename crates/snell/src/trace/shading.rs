@@ -2,7 +2,7 @@
 
 use super::hits::{Batch, Hits};
 use super::lecture::T_MIN;
-use super::leaving::{Leaving, until_clear};
+use super::leaving::{Leaving, back, until_clear};
 use super::media::{Media, OUTSIDE};
 use super::observer::Observer;
 use super::whitted;
@@ -20,6 +20,9 @@ const ORIGIN: usize = 1;
 const DISTANCE: usize = 7;
 const CLEAR: usize = 9;
 
+/// For a primitive that a ray has met: something through which no light goes, whatever it is.
+const OPAQUE: f64 = -2.0;
+
 /// Rays towards one light; the memory is used again for the next one.
 #[derive(Debug, Default)]
 pub(crate) struct ShadowRays {
@@ -28,7 +31,7 @@ pub(crate) struct ShadowRays {
     /// Whether the light reaches it, a bit per hit.
     lit: Vec<u64>,
     /// Row of the hit, origin, direction, distance of the light, primitive that the ray leaves, and up to where nothing blocks the
-    /// light: with real optics, without a closer look.
+    /// light: with real optics, without a closer look, and from a place in front of the hit.
     rays: Columns<10>,
     /// With tinted shadows what of the light reaches each hit.
     light: Columns<3>,
@@ -97,12 +100,11 @@ impl ShadowRays {
                         lit & !hit
                     };
                 } else {
-                    let (row, p) = (L::ramp(start), point);
-                    let clear = if real_optics {
-                        until_clear(world, batch.geometric_normal().dot(wi))
-                    } else {
-                        L::splat(T_MIN)
-                    };
+                    let (row, mut p, mut clear) = (L::ramp(start), point, L::splat(T_MIN));
+                    if real_optics {
+                        p = point + batch.wo() * back(world, batch.t());
+                        clear = until_clear(world, batch.geometric_normal().dot(wi));
+                    }
                     self.rays.push(asked, [row, p.x, p.y, p.z, wi.x, wi.y, wi.z, distance, source, clear]);
                 }
             }
@@ -162,7 +164,7 @@ impl ShadowRays {
                 packet.set(start, Vec3::new(x, y, z), Vec3::new(dx, dy, dz), t_min, distance, source, shear);
             }
             let mut blocked = world.tree.intersect::<L, true>(packet, u64::MAX >> (PACKET - count));
-            if real_optics && !tinted {
+            if real_optics {
                 blocked = self.look_closer::<L>(world, hits, packet, first, blocked);
             }
             while blocked != 0 {
@@ -170,8 +172,10 @@ impl ShadowRays {
                 let hit = index(self.rays.at(HIT, row));
                 blocked &= blocked - 1;
                 let mut dark = true;
-                if tinted {
-                    let passed = media.light_along(&self.leaving(world, hits, row), self.rays.at(DISTANCE, row), OUTSIDE);
+                if tinted && packet.primitive[row - first] != OPAQUE {
+                    let point = hits.batch::<f64>(world, hit).point();
+                    let way = Leaving { origin: point, ..self.leaving(world, hits, row) };
+                    let passed = media.light_along(&way, self.rays.at(DISTANCE, row), OUTSIDE);
                     self.light.replace::<f64, 3>(0, hit, passed.into());
                     dark = passed == Rgb::gray(0.0);
                 }
@@ -183,6 +187,7 @@ impl ShadowRays {
     }
 
     /// Which of the blocked rays of a packet are still blocked, if what is only a part of the place that they leave does not count.
+    /// Where something opaque is met at once, this is what is noted as met.
     #[inline(always)]
     fn look_closer<L: Lanes>(
         &self,
@@ -197,7 +202,12 @@ impl ShadowRays {
             let ray = waiting.trailing_zeros() as usize & (PACKET - 1);
             waiting &= waiting - 1;
             let [distance, clear] = [DISTANCE, CLEAR].map(|column| self.rays.at(column, first + ray));
-            if packet.t[ray] <= clear && !self.leaving(world, hits, first + ray).is_blocked(world, distance) {
+            if packet.t[ray] > clear {
+                continue;
+            }
+            if self.leaving(world, hits, first + ray).is_blocked(world, distance) {
+                packet.primitive[ray] = OPAQUE;
+            } else {
                 blocked &= !(1 << ray);
                 again |= 1 << ray;
                 (packet.t_min[ray], packet.t[ray], packet.primitive[ray]) = (clear, distance, -1.0);

@@ -14,7 +14,7 @@
 //! share of white. What is reflected goes one way for all, with `R` = Σ share·R of the bands, and stays white.
 
 use super::hits::Batch;
-use super::leaving::until_clear;
+use super::leaving::{back, until_clear};
 use super::media::{Media, WHITE};
 use super::pane::{Pane, Passage};
 use super::queue::{Load, RayKind, RayQueue, Rays, Weight};
@@ -170,7 +170,8 @@ fn child<L: Lanes>(hits: &Batch<'_, L>, dir: Vec3<L>, medium: L, band: L, attenu
     let (source, parent, pixel) = (hits.primitive(), hits.ray(), hits.pixel());
     let weight = Weight { attenuation, factor: Rgb::gray(1.0).splat() };
     let t_min = until_clear(hits.world, hits.geometric_normal().dot(dir));
-    let load = Load { weight, t_min, source, parent, pixel, medium, band };
+    let back = back(hits.world, hits.t());
+    let load = Load { weight, t_min, source, parent, pixel, medium, band, back };
     (hits.active & attenuation.not_black(), Rays { origin: hits.point(), dir, load })
 }
 

@@ -248,13 +248,8 @@ impl World {
             // The near root is before the point that is nearest to the centre.
             return t < (sphere.center - origin).dot(dir);
         }
-        let inward = self.solids[solid as usize].inward;
-        let Some((placement, id)) = self.placement(primitive) else {
-            return triangle::is_front(origin, dir, self.tree.corners(primitive)) != inward;
-        };
-        // In the space of the model, where the ray has met it.
-        let (origin, dir) = (placement.to_model.apply(origin), placement.to_model.turn(dir));
-        let is_front = triangle::is_front(origin, dir, self.tree.model(placement.model).corners(id));
-        is_front != (inward != placement.to_world.mirrors())
+        let mirrored = self.placement(primitive).is_some_and(|(placement, _)| placement.to_world.mirrors());
+        let (origin, dir, corners) = self.in_model(primitive, origin, dir);
+        triangle::is_front(origin, dir, corners) != (self.solids[solid as usize].inward != mirrored)
     }
 }

@@ -1,10 +1,11 @@
 //! What surface is at a hit: its normal, its material.
 
-use super::World;
+use super::{NO_SOLID, World};
 use crate::film::Rgb;
 use crate::geometry::ray::{Heading, axes, main_axis};
-use crate::geometry::{Affine, Vec3, triangle};
+use crate::geometry::{Affine, Sphere, Vec3, sphere, triangle};
 use crate::lanes::{Lanes, MAX_WIDTH, Mask};
+use crate::scene::Shadows;
 
 /// "No primitive", where an id is expected.
 pub const NO_PRIMITIVE: u32 = u32::MAX;
@@ -108,6 +109,12 @@ impl World {
         material.ko != Rgb::gray(0.0) || material.emission != Rgb::gray(0.0) || material.dyed
     }
 
+    /// Does no light at all go through, by the kind of shadows that the scene has?
+    pub(crate) fn blocks_light(&self, primitive: u32) -> bool {
+        let primitive = primitive as usize;
+        self.render.shadows != Shadows::Tinted || (self.solid_of(primitive) == NO_SOLID && !self.is_thin(primitive))
+    }
+
     /// The share of light that passes the outer side of a transparent surface, without what Fresnel reflects.
     pub(crate) fn lets_through(&self, primitive: usize, point: Vec3) -> Rgb {
         let material = &self.materials[self.material_of(primitive) as usize];
@@ -129,6 +136,31 @@ impl World {
         match self.spheres.get(primitive) {
             Some(sphere) => (point - sphere.center).unit(),
             None => triangle::normal(self.corners(primitive)),
+        }
+    }
+
+    /// Where a line meets a primitive; a sphere on the side on which it was met at about `t`.
+    pub(crate) fn meets_at(&self, primitive: usize, origin: Vec3, dir: Vec3, t: f64) -> Option<f64> {
+        if let Some(&Sphere { center, radius }) = self.spheres.get(primitive) {
+            let middle = (center - origin).dot(dir);
+            let before = if t < middle { f64::NEG_INFINITY } else { middle };
+            let (t, meets) = sphere::crossing(origin, dir, center, radius, before, false);
+            return meets.then_some(t);
+        }
+        let (origin, dir, corners) = self.in_model(primitive, origin, dir);
+        let k = axes(main_axis(dir));
+        let heading = Heading::new(dir.permuted(k));
+        let hit = triangle::intersect::<f64>(origin.permuted(k), &heading, corners.map(|v| v.permuted(k)));
+        hit.meets.then_some(hit.t)
+    }
+
+    /// A ray and the corners of a triangle in the space in which the one meets the other: that of the model, for an instance.
+    pub(super) fn in_model(&self, primitive: usize, origin: Vec3, dir: Vec3) -> (Vec3, Vec3, [Vec3; 3]) {
+        match self.placement(primitive) {
+            None => (origin, dir, self.tree.corners(primitive)),
+            Some((Placement { model, to_model, .. }, id)) => {
+                (to_model.apply(origin), to_model.turn(dir), self.tree.model(*model).corners(id))
+            }
         }
     }
 

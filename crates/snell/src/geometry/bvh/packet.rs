@@ -133,6 +133,12 @@ impl Packet {
         L::splat(-1.0).store(&mut self.primitive[start..]);
     }
 
+    /// Lets one ray start elsewhere.
+    #[inline(always)]
+    pub fn start_at(&mut self, ray: usize, Vec3 { x, y, z }: Vec3) {
+        (self.origin[0][ray], self.origin[1][ray], self.origin[2][ray]) = (x, y, z);
+    }
+
     /// Origins and directions of the rays of one group of lanes.
     #[inline(always)]
     pub fn ways<L: Lanes>(&self, start: usize) -> (Vec3<L>, Vec3<L>) {

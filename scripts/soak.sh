@@ -1,0 +1,5 @@
+#!/usr/bin/env bash
+# Long attacks, each time with other numbers, which are said where something is wrong.
+source "$(dirname "$0")/lib.sh"
+need_rust
+SNELL_SOAK_SECONDS=${SNELL_SOAK_SECONDS:-600} cargo test --locked --quiet --package snell --lib --profile ci soak -- --nocapture
