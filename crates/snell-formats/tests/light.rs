@@ -206,7 +206,6 @@ fn the_corners_of_a_room_do_not_leak() {
             let mut world = World::new(&scene).unwrap();
             for (at, _) in places(&placed) {
                 let seen = look(&mut world, eye, at, size);
-                if seen != black { let t = traced(&world, 0, 0).1; for n in &t.nodes { println!("{:?} {:?} o {:?} d {:?} -> {:?} contributes {:?}", n.depth, n.kind, n.origin, n.dir, n.hit.as_ref().map(|h| (h.primitive, h.t, h.point, h.normal, h.lights.iter().map(|l| (l.facing, l.transmittance.r, l.between.clone())).collect::<Vec<_>>())), n.contribution.r); } println!("{:?}", world.warnings); for f in 0..placed.faces.len() { println!("{f} {:?} n {:?}", placed.corners(f), triangle::normal(placed.corners(f))); } }
                 assert_eq!(seen, black, "{name}, {size} large, {offset} away, at {at:?}");
             }
         }

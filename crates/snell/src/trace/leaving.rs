@@ -80,7 +80,8 @@ impl Leaving {
             return false;
         }
         let other = world.geometric_normal(primitive as usize, self.origin);
-        if other.dot(self.origin - corners[0]).abs() > world.clearance {
+        // Four roundings: below that it is not known on which side the ray starts.
+        if other.dot(self.origin - corners[0]).abs() > world.clearance * 0.125 {
             return t > 0.0;
         }
         (other.dot(self.dir) > 0.0) != (other.dot(self.wo) > 0.0)
