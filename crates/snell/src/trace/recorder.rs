@@ -133,7 +133,7 @@ impl Recorder {
 
 /// What lies between a hit and a light, up to what blocks it.
 fn between(world: &World, hit: &Batch<'_, f64>, wi: Vec3, distance: f64) -> Vec<(u32, f64)> {
-    if world.render.shadows == Shadows::Off {
+    if world.render.shadows() == Shadows::Off {
         return Vec::new();
     }
     let (origin, source) = (hit.point(), hit.primitive());
@@ -148,7 +148,7 @@ fn between(world: &World, hit: &Batch<'_, f64>, wi: Vec3, distance: f64) -> Vec<
         let starts = f64::from(primitive) == source && world.starts_at(primitive as usize, origin, wi, t);
         t > t_min && t < distance && !starts && (real_optics || enters)
     });
-    let tinted = world.render.shadows == Shadows::Tinted;
+    let tinted = world.render.shadows() == Shadows::Tinted;
     let blocks = |primitive: u32| {
         !tinted || (world.solid_of(primitive as usize) == NO_SOLID && !world.is_thin(primitive as usize))
     };

@@ -51,8 +51,8 @@ impl ShadowRays {
         self.rays.clear();
         self.lit.clear();
         self.lit.resize(hits.len().div_ceil(64), 0);
-        let with_shadows = world.render.shadows != Shadows::Off;
-        let tinted = world.render.shadows == Shadows::Tinted;
+        let with_shadows = world.render.shadows() != Shadows::Off;
+        let tinted = world.render.shadows() == Shadows::Tinted;
         self.light.clear();
         let real_optics = world.render.integrator == Integrator::Whitted;
         self.t_min = if real_optics { 0.0 } else { T_MIN };
@@ -136,7 +136,7 @@ impl ShadowRays {
     #[inline(always)]
     fn block<L: Lanes>(&mut self, media: &mut Media<'_>, packet: &mut Packet) {
         let world = media.world();
-        let tinted = world.render.shadows == Shadows::Tinted;
+        let tinted = world.render.shadows() == Shadows::Tinted;
         let shear = world.tree.has_triangles();
         for first in (0..self.rays.len()).step_by(PACKET) {
             let count = (self.rays.len() - first).min(PACKET);
