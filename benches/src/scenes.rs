@@ -72,7 +72,7 @@ pub const KNOT_LIGHT: [f64; 3] = [8.0, -2.0, 9.0];
 /// Everything as in `peers/povray.py`; a branch that weighs less than 1/255 ends, as it does there.
 fn glass_knot(shadows: Shadows, size: u32) -> Scene {
     let mut scene = scene(7, camera([6.0, -5.0, 4.5], 50.0, size), size);
-    (scene.render.integrator, scene.render.shadows) = (Integrator::Whitted, shadows);
+    (scene.render.integrator, scene.render.shadows) = (Integrator::Whitted, Some(shadows));
     scene.render.min_throughput = 1.0 / 255.0;
     scene.background = Rgb::new(0.4, 0.55, 0.8);
     scene.lights = vec![light([8.0, -2.0, 9.0], Rgb::gray(0.8)), light([-4.0, -8.0, 7.0], Rgb::gray(0.5))];

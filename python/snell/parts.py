@@ -288,7 +288,10 @@ class Sky(Value):
 
 @dataclass(eq=False, repr=False)
 class Render(Value):
-    """How the picture is made; there is no default model of light. The camera's width and height can give `size`."""
+    """How the picture is made; there is no default model of light. The camera's width and height can give `size`.
+
+    Where it names no `shadows`, they are tinted in `whitted` and opaque in the other models.
+    """
 
     integrator: str
     size: Sequence[int] | None = None
@@ -297,6 +300,6 @@ class Render(Value):
     max_depth: int = 32
     min_throughput: float = 1 / 4096
     bands: int = 16
-    shadows: str = "opaque"
+    shadows: str | None = None
     transfer: str = "srgb"
     rounding: str = "round"

@@ -106,7 +106,7 @@ pub struct RenderArgs {
     /// The model of light: lecture, course2018, course2020 or whitted
     #[arg(long, value_name = "NAME", value_parser = named::<Integrator>, help_heading = "Light")]
     pub integrator: Option<Integrator>,
-    /// What blocks a light: off (nothing), opaque (anything) or tinted (what is transparent dims it)
+    /// What blocks a light: off (nothing), opaque (anything) or tinted (whitted's default: what is transparent dims it)
     #[arg(long, value_name = "KIND", value_parser = named::<Shadows>, help_heading = "Light")]
     pub shadows: Option<Shadows>,
 

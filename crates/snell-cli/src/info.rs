@@ -78,7 +78,7 @@ fn about_scene(loaded: &Loaded, world: &World) -> String {
     let name = |value: &dyn std::fmt::Debug| format!("{value:?}").to_lowercase();
     line(
         "integrator",
-        format!("{}, depth {}, shadows {}", name(&render.integrator), render.max_depth, name(&render.shadows)),
+        format!("{}, depth {}, shadows {}", name(&render.integrator), render.max_depth, name(&render.shadows())),
     );
     line(
         "picture",

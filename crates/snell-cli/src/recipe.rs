@@ -4,13 +4,14 @@ use crate::args::RenderArgs;
 use crate::say::{Failure, OrFail, SCENE};
 use serde::{Deserialize, Serialize};
 use snell::film::Crop;
-use snell::scene::{Integrator, Rounding, Scene, Shadows, Transfer};
+use snell::scene::{Integrator, Render, Rounding, Scene, Shadows, Transfer};
 use snell_formats::driver::Dialect;
 use snell_formats::load::{Kind, Loaded, ModelFile, load_text};
 use snell_formats::{LoadOptions, Report, Source, load};
 use std::path::{Path, PathBuf};
 
-/// How a picture is made: the text of its scene and all settings besides.
+/// How a picture is made: the text of its scene and all settings besides. Once rendered, those that the text may leave out are
+/// written out, so that another default of a later version does not change the picture.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Recipe {
     /// Version of Snell that made the picture.
@@ -35,7 +36,13 @@ pub struct Recipe {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub spp: Option<u32>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub seed: Option<u32>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub depth: Option<u32>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub min_throughput: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bands: Option<u32>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub integrator: Option<Integrator>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -81,7 +88,10 @@ impl Recipe {
             stretch: args.stretch,
             crop: args.crop,
             spp: args.spp,
+            seed: None,
             depth: args.depth,
+            min_throughput: None,
+            bands: None,
             integrator: args.integrator,
             shadows: args.shadows,
             transfer: args.transfer,
@@ -130,13 +140,43 @@ impl Recipe {
         Ok(loaded)
     }
 
+    /// Takes over what the settings of the scene have come to.
+    pub fn resolve(&mut self, render: &Render) {
+        self.spp = Some(render.spp);
+        self.seed = Some(render.seed);
+        self.depth = Some(render.max_depth);
+        self.min_throughput = Some(render.min_throughput);
+        self.bands = Some(render.bands);
+        self.integrator = Some(render.integrator);
+        self.shadows = Some(render.shadows());
+        self.transfer = Some(render.transfer);
+        self.rounding = Some(render.rounding);
+    }
+
+    /// A recipe of Snell before `tinted` became the default of `whitted` means `opaque` where neither it nor its scene names the
+    /// shadows. Writes that out, and returns a note about it.
+    pub fn keep_old_shadows(&mut self, render: &Render) -> Option<&'static str> {
+        let integrator = self.integrator.unwrap_or(render.integrator);
+        if integrator != Integrator::Whitted || self.shadows.or(render.shadows).is_some() {
+            return None;
+        }
+        self.shadows = Some(Shadows::Opaque);
+        Some(
+            "the picture was made when `whitted` had opaque shadows by default, and gets them again; the default is `tinted` now: \
+             to have that, render its scene (`snell info --scene` prints it) with --shadows tinted",
+        )
+    }
+
     /// Puts the settings into the scene. Returns a note if the bounds were widened.
     pub fn apply(&self, scene: &mut Scene) -> Option<String> {
         let render = &mut scene.render;
         render.spp = self.spp.unwrap_or(render.spp);
+        render.seed = self.seed.unwrap_or(render.seed);
         render.max_depth = self.depth.unwrap_or(render.max_depth);
+        render.min_throughput = self.min_throughput.unwrap_or(render.min_throughput);
+        render.bands = self.bands.unwrap_or(render.bands);
         render.integrator = self.integrator.unwrap_or(render.integrator);
-        render.shadows = self.shadows.unwrap_or(render.shadows);
+        render.shadows = self.shadows.or(render.shadows);
         render.transfer = self.transfer.unwrap_or(render.transfer);
         render.rounding = self.rounding.unwrap_or(render.rounding);
         let size = self.size?;

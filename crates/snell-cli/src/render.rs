@@ -139,16 +139,24 @@ fn again(from: &Path, args: &RenderArgs, output: &Path) -> Outcome {
         let report = Report::error(format!("`{}` does not say how it was made", from.display()));
         Failure::new(FAILED, report.help("only PNG and EXR pictures made by Snell do"))
     })?;
-    let recipe: Recipe = serde_json::from_str(&remembered).map_err(|e| {
+    let mut recipe: Recipe = serde_json::from_str(&remembered).map_err(|e| {
         Failure::new(FAILED, Report::error(format!("the recipe in `{}` cannot be read: {e}", from.display())))
     })?;
     let loaded = recipe.load(&args.reading.search)?;
+    if let Some(note) = recipe.keep_old_shadows(&loaded.scene.render) {
+        match args.progress {
+            ProgressKind::Json => eprintln!("{}", json!({ "event": "note", "message": note })),
+            ProgressKind::Auto if args.quiet => {}
+            ProgressKind::Auto => eprintln!("note: {note}"),
+        }
+    }
     one(recipe, loaded, args, output)
 }
 
 /// Renders one picture.
 fn one(mut recipe: Recipe, mut loaded: Loaded, args: &RenderArgs, output: &Path) -> Outcome {
     let widened = recipe.apply(&mut loaded.scene);
+    recipe.resolve(&loaded.scene.render);
     let preparing = Phase::start(args.progress, args.quiet, "preparing", &recipe.name);
     let world = loaded.build(args.bvh, args.threads.into()).or_fail(SCENE)?;
     drop(preparing);

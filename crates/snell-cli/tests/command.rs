@@ -136,6 +136,67 @@ fn a_picture_can_be_rendered_again_from_itself() {
     assert!(none.status.code() == Some(1) && stderr(&none).contains("does not say how it was made"));
 }
 
+/// A ball of glass over a floor, in the model whose default shadows have changed; and what else a scene may leave out.
+const GLASS: &str = "snell = 1\nambient = 0.1\n[render]\nintegrator = 'whitted'\nsize = [24, 24]\n[camera]\n\
+                     eye = [0, 4, 9]\nlook_at = [0, 0, 0]\nup = [0, 1, 0]\nbounds = [-2, 2, -2, 2]\nnear = -5\n\
+                     [material.glass]\nko = 0\neta = 1.5\n[material.floor]\nkd = 1\n\
+                     [[sphere]]\ncenter = [0, 1, 0]\nradius = 1\nmaterial = 'glass'\n\
+                     [[plane]]\ncenter = [0, -1, 0]\nnormal = [0, 1, 0]\nsize = [9, 9]\nmaterial = 'floor'\n\
+                     [[light]]\nposition = [0, 9, 0]\ncolor = 1\n";
+
+/// A recipe that names no shadows is from when they were opaque; it gives the same bits as then, and the new default is told.
+#[test]
+fn a_picture_made_by_an_older_default_is_made_again_by_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    fs::write(at.join("glass.toml"), GLASS).unwrap();
+    render(at, &["glass.toml", "-o", "tinted.npy"]);
+    render(at, &["glass.toml", "--shadows", "opaque", "-o", "opaque.png"]);
+    let recipe = |file: &str| -> serde_json::Value {
+        let remembered = snell_formats::picture::read(&at.join(file)).unwrap().recipe.unwrap();
+        serde_json::from_str(&remembered).unwrap()
+    };
+    // As it was written then: what was asked for, and nothing else.
+    let old = |keep: &[&str], name: &str| {
+        let source = snell_formats::Source::new("glass.toml", GLASS);
+        let scene = snell_formats::scene_file::parse(&source, snell_formats::scene_file::Syntax::Toml).unwrap();
+        let film =
+            snell::render::render(&snell::world::World::new(&scene).unwrap(), &snell::render::Options::default())
+                .unwrap()
+                .film;
+        let mut text = recipe("opaque.png");
+        let always = ["snell", "name", "kind", "text", "folder", "film_sha256"];
+        text.as_object_mut().unwrap().retain(|key, _| always.contains(&key.as_str()) || keep.contains(&key.as_str()));
+        let png = snell_formats::picture::Format::Png { sixteen_bit: false };
+        let encoding =
+            snell::film::transfer::Encoding { transfer: scene.render.transfer, rounding: scene.render.rounding };
+        snell_formats::picture::write(&at.join(name), png, &film, encoding, Some(&text.to_string())).unwrap();
+    };
+    old(&[], "old.png");
+    // That the film is the same is looked at by its hash, which the picture remembers.
+    let again = run(at, &["render", "--from", "old.png", "-o", "again.png"]);
+    let told = stderr(&again);
+    assert!(told.contains("`tinted`") && told.contains("--shadows tinted"), "{told}");
+    run(at, &["diff", "again.png", "opaque.png"]);
+    let json = run(at, &["render", "--from", "old.png", "-o", "again.png", "--progress", "json"]);
+    assert!(stderr(&json).lines().any(|line| line.contains(r#""event":"note""#)), "{}", stderr(&json));
+    assert!(!stderr(&run(at, &["render", "--from", "old.png", "-o", "again.png", "-q"])).contains("tinted"));
+    // Nothing has changed for who said it, or for another model of light, or for pictures of today.
+    old(&["shadows"], "said.png");
+    run(at, &["render", "glass.toml", "--integrator", "lecture", "-o", "lecture.png"]);
+    render(at, &["glass.toml", "-o", "new.png"]);
+    for file in ["said.png", "lecture.png", "new.png", "again.png"] {
+        let told = stderr(&run(at, &["render", "--from", file, "-o", "last.png"]));
+        assert!(!told.contains("note"), "{file}: {told}");
+    }
+    // And so that it stays so, all that a scene may leave out is written out.
+    let settings = ["spp", "seed", "depth", "min_throughput", "bands", "integrator", "shadows", "transfer", "rounding"];
+    for file in ["new.png", "again.png"] {
+        assert!(settings.iter().all(|&key| !recipe(file)[key].is_null()), "{}", recipe(file));
+    }
+    assert_eq!((&recipe("new.png")["shadows"], &recipe("again.png")["shadows"]), (&json!("tinted"), &json!("opaque")));
+}
+
 const TRIANGLE: &str = "v -1 -1 0\nv 1 -1 0\nv 0 1 0\nusemtl m\nf 1 2 3\n";
 const DRIVER: &str = "eye 0 0 9\nlook 0 0 0\nup 0 1 0\nd 5\nbounds -1 -1 1 1\nres 8 8\nambient 1 1 1\n\
                       model 0 0 1 90 1 0 0 0 t.obj\n";

@@ -22,8 +22,8 @@ fn scenes(group: &str, size: u32) -> Vec<(String, Scene)> {
             scene.render.integrator = integrator;
             // Some rays carry less in one model than in the other; what matters here is that all kinds are there.
             (scene.render.spp, scene.render.bands) = (scene.render.spp.min(2), scene.render.bands.min(4));
-            if integrator == Integrator::Lecture && scene.render.shadows == Shadows::Tinted {
-                scene.render.shadows = Shadows::Opaque;
+            if integrator == Integrator::Lecture && scene.render.shadows == Some(Shadows::Tinted) {
+                scene.render.shadows = Some(Shadows::Opaque);
             }
             all.push((format!("{name}, {integrator:?}"), scene));
         }

@@ -99,7 +99,7 @@ fn a_white_furnace_with_thin_faces_stays_white() {
 fn a_pane_casts_a_faint_shadow() {
     let mut scene = furnace(1);
     scene.background = Rgb::gray(0.0);
-    scene.render.shadows = Shadows::Tinted;
+    scene.render.shadows = Some(Shadows::Tinted);
     pane(&mut scene, 1.5, 2.0);
     scene.materials["pane"].sigma_a = Some(Rgb::new(0.0, 0.1, 0.2));
     let white = Material { kd: Rgb::gray(1.0), ..Material::default() };
@@ -124,7 +124,7 @@ fn interfaces_show_what_solids_show() {
     let base = || {
         let mut scene = furnace(60);
         (scene.background, scene.ambient) = (Rgb::gray(0.1), Rgb::gray(1.0));
-        scene.render.shadows = Shadows::Tinted;
+        scene.render.shadows = Some(Shadows::Tinted);
         scene.lights = vec![snell::scene::Light::at([5.0, 6.0, 4.0], Rgb::gray(0.5))];
         let red = Material { ka: Rgb::new(1.0, 0.2, 0.1), kd: Rgb::gray(0.5), ..Material::default() };
         scene.materials.insert("red".to_owned(), red);

@@ -45,7 +45,8 @@ fn hull(vertices: Vec<Vec3>) -> TriangleMesh {
             for c in (a + 1)..count {
                 let corners = [a, b, c].map(|v| vertices[v as usize]);
                 let n = triangle::normal(corners);
-                let behind = (0..count).all(|v| [a, b, c].contains(&v) || n.dot(vertices[v as usize] - corners[0]) < -1e-9);
+                let behind =
+                    (0..count).all(|v| [a, b, c].contains(&v) || n.dot(vertices[v as usize] - corners[0]) < -1e-9);
                 if b > a && b != c && behind {
                     faces.push([a, b, c]);
                 }
@@ -63,7 +64,12 @@ fn icosahedron() -> TriangleMesh {
 }
 
 fn octahedron() -> TriangleMesh {
-    hull([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].iter().flat_map(|&v| [Vec3::from(v), -Vec3::from(v)]).collect())
+    hull(
+        [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
+            .iter()
+            .flat_map(|&v| [Vec3::from(v), -Vec3::from(v)])
+            .collect(),
+    )
 }
 
 fn convex() -> Vec<(&'static str, TriangleMesh)> {
@@ -79,7 +85,7 @@ fn convex() -> Vec<(&'static str, TriangleMesh)> {
 
 /// A scene with one opaque mesh.
 fn stage(geometry: TriangleMesh, material: Material) -> Scene {
-    let render = Render { shadows: Shadows::Opaque, ..Render::new(Integrator::Whitted, [1, 1]) };
+    let render = Render { shadows: Some(Shadows::Opaque), ..Render::new(Integrator::Whitted, [1, 1]) };
     let camera = Camera::new([0.0, 0.0, 1.0], [0.0; 3], [0.0, 1.0, 0.0], [-1.0, 1.0, -1.0, 1.0], -1.0);
     let mut scene = Scene::new(render, camera);
     scene.materials.insert("it".to_owned(), material);
@@ -90,7 +96,13 @@ fn stage(geometry: TriangleMesh, material: Material) -> Scene {
 /// Looks from the eye of a world at a point.
 fn look(world: &mut World, eye: Vec3, at: Vec3, size: f64) -> Rgb {
     let up = if (at - eye).unit().y.abs() > 0.9 { [1.0, 0.0, 0.0] } else { [0.0, 1.0, 0.0] };
-    let camera = Camera::new([eye.x, eye.y, eye.z], [at.x, at.y, at.z], up, [-size, size, -size, size], -0.5 * (at - eye).length());
+    let camera = Camera::new(
+        [eye.x, eye.y, eye.z],
+        [at.x, at.y, at.z],
+        up,
+        [-size, size, -size, size],
+        -0.5 * (at - eye).length(),
+    );
     world.camera = CameraFrame::new(&camera, &world.render);
     traced(world, 0, 0).0
 }
@@ -142,7 +154,8 @@ fn convex_solids_do_not_shade_or_mirror_themselves() {
                 let mut mirrored = stage(placed.clone(), mirror);
                 let [horizon, zenith, nadir] = [[0.5, 0.5, 0.5], [1.0, 0.5, 0.0], [0.0, 0.5, 1.0]].map(Rgb::from);
                 let (horizon, zenith, nadir) = (Some(horizon), Some(zenith), Some(nadir));
-                mirrored.sky = Some(Sky { horizon, zenith, nadir, image: None, brightness: 1.0, rotate: 0.0, pixels: None });
+                mirrored.sky =
+                    Some(Sky { horizon, zenith, nadir, image: None, brightness: 1.0, rotate: 0.0, pixels: None });
                 // The world's size follows from its camera, too.
                 for scene in [&mut lit, &mut mirrored] {
                     scene.camera.eye = [eye.x, eye.y, eye.z];
@@ -162,12 +175,18 @@ fn convex_solids_do_not_shade_or_mirror_themselves() {
                     let expected: Vec<f64> = normals.iter().map(|n| n.dot(wi).max(0.0)).collect();
                     // Directions err by what places are rounded to, far away by 1e5·2^-53, thirty times that where the eye aims.
                     let fits = expected.iter().any(|e| (e - seen).abs() < 1e-9);
-                    assert!(fits, "{name}, 2^{exponent}, {offset} away: {seen} at {at:?}, expected one of {expected:?}");
+                    assert!(
+                        fits,
+                        "{name}, 2^{exponent}, {offset} away: {seen} at {at:?}, expected one of {expected:?}"
+                    );
                     let seen = look(&mut mirrored, eye, at, size).r;
                     let heights = normals.iter().map(|&n| (n * (2.0 * n.dot(wo)) - wo).unit().y);
                     let expected: Vec<f64> = heights.map(|y| 0.5 + 0.5 * y).collect();
                     let fits = expected.iter().any(|e| (e - seen).abs() < 1e-9);
-                    assert!(fits, "{name}, 2^{exponent}, {offset} away: {seen} in the mirror at {at:?}, not {expected:?}");
+                    assert!(
+                        fits,
+                        "{name}, 2^{exponent}, {offset} away: {seen} in the mirror at {at:?}, not {expected:?}"
+                    );
                 }
             }
         }
@@ -188,13 +207,8 @@ fn the_corners_of_a_room_do_not_leak() {
             let middle = map.apply(Vec3::<f64>::default());
             let eye = middle + numbers.direction() * (0.1 * size);
             let black = Rgb::gray(0.0);
-            let material = Material {
-                ka: black,
-                kd: Rgb::gray(1.0),
-                ks: black,
-                kr: Rgb::gray(1.0),
-                ..Material::default()
-            };
+            let material =
+                Material { ka: black, kd: Rgb::gray(1.0), ks: black, kr: Rgb::gray(1.0), ..Material::default() };
             let mut scene = stage(placed.clone(), material);
             scene.camera.eye = [eye.x, eye.y, eye.z];
             scene.background = Rgb::gray(1.0);
@@ -279,7 +293,8 @@ fn a_smooth_solid_does_not_shade_itself() {
                 [if k == 12 { 0.0 } else { sin }, -cos]
             })
             .collect();
-        let map = Affine::scaling(Vec3::new(size, size, size)).then(Affine::translation(Vec3::new(offset, offset, 0.0)));
+        let map =
+            Affine::scaling(Vec3::new(size, size, size)).then(Affine::translation(Vec3::new(offset, offset, 0.0)));
         let ball = make::lathe(&profile, 24).transformed(&map);
         let mut scene = stage(ball, Material { kd: Rgb::gray(1.0), ..Material::default() });
         scene.meshes[0].smooth_angle = 180.0;
@@ -347,7 +362,8 @@ fn glass_of_slivers_has_no_holes() {
             glass(&mut scene, "glass", 1.5, 0);
             mesh(&mut scene, solid.transformed(&map), "glass");
             let [eye, half] = [[3.0, 4.0, 5.0].map(|c: f64| c * size), [size, 0.0, 0.0]];
-            scene.camera = Camera::new(eye, [0.0; 3], [0.0, 1.0, 0.0], [-half[0], half[0], -half[0], half[0]], -4.0 * size);
+            scene.camera =
+                Camera::new(eye, [0.0; 3], [0.0, 1.0, 0.0], [-half[0], half[0], -half[0], half[0]], -4.0 * size);
             let world = World::new(&scene).unwrap();
             for pixel in 0..24 * 24 {
                 let (radiance, tree) = traced(&world, pixel % 24, pixel / 24);
@@ -393,8 +409,13 @@ fn glass_is_left_at_its_edges() {
                 let mut world = World::new(&scene).unwrap();
                 for (at, _) in places(&placed).into_iter().chain([(middle, vec![])]) {
                     let up = if (at - eye).unit().y.abs() > 0.9 { [1.0, 0.0, 0.0] } else { [0.0, 1.0, 0.0] };
-                    let camera =
-                        Camera::new([eye.x, eye.y, eye.z], [at.x, at.y, at.z], up, [-size, size, -size, size], -0.5 * (at - eye).length());
+                    let camera = Camera::new(
+                        [eye.x, eye.y, eye.z],
+                        [at.x, at.y, at.z],
+                        up,
+                        [-size, size, -size, size],
+                        -0.5 * (at - eye).length(),
+                    );
                     world.camera = CameraFrame::new(&camera, &world.render);
                     let (radiance, tree) = traced(&world, 0, 0);
                     let whole = (radiance + tree.lost).r;

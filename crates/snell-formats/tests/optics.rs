@@ -464,7 +464,7 @@ fn nothing_at_all_is_the_background() {
 fn an_opaque_sphere_has_an_inside() {
     for shadows in [Shadows::Opaque, Shadows::Tinted] {
         let mut scene = furnace(4);
-        scene.render.shadows = shadows;
+        scene.render.shadows = Some(shadows);
         scene.materials.insert("white".to_owned(), Material { kd: Rgb::gray(1.0), ..Material::default() });
         ball(&mut scene, [0.0; 3], 100.0, "white");
         let mut light = lecture("lecture/default", 1).lights[0].clone();
@@ -504,7 +504,7 @@ fn a_gel_dyes_what_goes_through() {
     assert_eq!(tree(&scene, [0.1, 0.2, 5.0], [0.0, 0.0, -1.0]).sum(), gel.kd);
     // The light falls through it onto a floor.
     scene.background = Rgb::gray(0.0);
-    scene.render.shadows = Shadows::Tinted;
+    scene.render.shadows = Some(Shadows::Tinted);
     scene.materials.insert("floor".to_owned(), Material { kd: Rgb::gray(1.0), ..Material::default() });
     mesh(&mut scene, cuboid([-9.0, -3.0, -9.0], [9.0, -2.0, 9.0]), "floor");
     let mut light = lecture("lecture/default", 1).lights[0].clone();

@@ -297,7 +297,7 @@ fn sellmeiers_coefficients_are_the_glass() {
 #[test]
 fn what_is_not_built_yet_is_named() {
     let mut scene = furnace(2);
-    scene.render.shadows = Shadows::Caustic;
+    scene.render.shadows = Some(Shadows::Caustic);
     let problem = World::new(&scene).unwrap_err().remove(0);
     assert!(problem.message.contains("not built yet"), "{problem}");
 }
@@ -306,7 +306,7 @@ fn what_is_not_built_yet_is_named() {
 #[test]
 fn a_pattern_on_glass_dyes_shadows() {
     let mut scene = dark_room(1);
-    (scene.ambient, scene.render.shadows) = (Rgb::gray(0.0), Shadows::Tinted);
+    (scene.ambient, scene.render.shadows) = (Rgb::gray(0.0), Some(Shadows::Tinted));
     paint(&mut scene, "white", Rgb::gray(1.0));
     let colors = [Rgb::new(1.0, 0.0, 0.0), Rgb::new(0.0, 0.0, 1.0)];
     let texture = Texture { checker: Some(colors), image: None, repeat: [2.0, 1.0], linear: false, pixels: None };

@@ -57,15 +57,19 @@ impl NativePicture {
         Encoding { transfer: render.transfer, rounding: render.rounding }
     }
 
-    /// What `snell render --from` needs to make it again.
+    /// What `snell render --from` needs to make it again, with the settings that the scene leaves out.
     fn recipe(&self) -> String {
         let Ready { name, text, folder, models, .. } = &*self.ready;
         let hash = self.film.is_finished().then(|| disk::sha256(self.film.bytes()));
         let whole = self.film.crop.width == self.film.full_size[0] && self.film.crop.height == self.film.full_size[1];
         let crop = (!whole).then_some(self.film.crop);
+        let render = &self.ready.world.render;
         json!({
             "snell": env!("CARGO_PKG_VERSION"), "name": name, "kind": "json", "text": text, "folder": folder,
-            "models": models, "crop": crop, "film_sha256": hash,
+            "crop": crop, "spp": render.spp, "seed": render.seed, "depth": render.max_depth,
+            "min_throughput": render.min_throughput, "bands": render.bands, "integrator": render.integrator,
+            "shadows": render.shadows(), "transfer": render.transfer, "rounding": render.rounding,
+            "models": models, "film_sha256": hash,
         })
         .to_string()
     }

@@ -14,7 +14,7 @@ fn stage_of_glass() -> Scene {
     scene.render.max_depth = 8;
     scene.render.bands = 3;
     scene.render.min_throughput = 0.001;
-    scene.render.shadows = Shadows::Tinted;
+    scene.render.shadows = Some(Shadows::Tinted);
     let clear = Material { ko: Rgb::gray(0.0), ..Material::default() };
     let green = Some(Rgb::new(0.5, 0.9, 0.6));
     let glasses = [
@@ -54,7 +54,7 @@ pub fn bubbles() -> Scene {
 /// A few spheres, for whose shadows no tree is asked.
 pub fn marbles() -> Scene {
     let mut scene = stage_of_glass();
-    scene.render.shadows = Shadows::Opaque;
+    scene.render.shadows = Some(Shadows::Opaque);
     for (i, glass) in GLASSES.into_iter().enumerate() {
         scene.spheres.push(sphere([36.0 + 7.0 * i as f64, 45.0 + 3.0 * i as f64, 60.0], 5.0, glass));
     }

@@ -66,7 +66,7 @@ fn colored() -> bool {
 fn settings(loaded: &mut Loaded, args: &ExplainArgs) {
     let render = &mut loaded.scene.render;
     render.integrator = args.integrator.unwrap_or(render.integrator);
-    render.shadows = args.shadows.unwrap_or(render.shadows);
+    render.shadows = args.shadows.or(render.shadows);
     render.spp = args.spp.unwrap_or(render.spp);
     if let Some(size) = args.size {
         loaded.scene.resize(size);

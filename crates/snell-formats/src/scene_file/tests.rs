@@ -127,7 +127,7 @@ fn set_changes_one_value_and_nothing_else() {
         expected.camera.eye = [0.0, 0.0, 7.0];
         assert_eq!(change("camera.eye.3=7"), expected);
         let mut expected = before.clone();
-        expected.render.shadows = snell::scene::Shadows::Off;
+        expected.render.shadows = Some(snell::scene::Shadows::Off);
         assert_eq!(change("render.shadows=off"), expected);
         let mut expected = before.clone();
         expected.ambient = snell::film::Rgb::gray(0.5);

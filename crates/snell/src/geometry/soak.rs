@@ -217,7 +217,8 @@ fn truth(origin: Vec3, dir: Vec3, corners: [Vec3; 3]) -> Truth {
     let bound = 4.0 * triangle::SEEN * far + 16.0 * U * diameter;
     let distance_to_segment = |p: [f64; 2], q: [f64; 2]| {
         let along = minus(q, p);
-        let share = (-(p[0] * along[0] + p[1] * along[1]) / (along[0] * along[0] + along[1] * along[1])).clamp(0.0, 1.0);
+        let share =
+            (-(p[0] * along[0] + p[1] * along[1]) / (along[0] * along[0] + along[1] * along[1])).clamp(0.0, 1.0);
         let share = if share.is_nan() { 0.0 } else { share };
         length([p[0] + along[0] * share, p[1] + along[1] * share])
     };
@@ -338,7 +339,9 @@ fn rays_at_slivers_hit_what_exact_arithmetic_says() {
     let [rays, decided, hits] = [&count.rays, &count.decided, &count.hits].map(|n| n.load(Ordering::Relaxed));
     #[expect(clippy::print_stdout, reason = "what a soak is run for")]
     {
-        println!("seed {seed}: {rays} rays; {decided} times a ray and a triangle decided, {hits} of them hits; none wrong");
+        println!(
+            "seed {seed}: {rays} rays; {decided} times a ray and a triangle decided, {hits} of them hits; none wrong"
+        );
     }
     assert!(rays > 200_000 && hits > rays / 8, "aimed badly: {rays} rays, {hits} hits");
 }

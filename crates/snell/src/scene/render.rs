@@ -21,15 +21,16 @@ pub struct Render {
     /// How many bounces may follow the camera ray.
     #[serde(default = "default_depth")]
     pub max_depth: u32,
-    /// `whitted`: branches that carry less than this are not followed, and counted as lost light.
+    /// `whitted`: branches that carry less than this part of what they could, of white or of their band of light, are not
+    /// followed, and counted as lost light.
     #[serde(default = "default_throughput", skip_serializing_if = "is_default_throughput")]
     pub min_throughput: f64,
     /// `whitted`: into how many wavelengths a ray splits at its first dispersive face; 1 for no colours.
     #[serde(default = "default_bands", skip_serializing_if = "is_default_bands")]
     pub bands: u32,
-    /// What stands between a surface and a light.
-    #[serde(default)]
-    pub shadows: Shadows,
+    /// What stands between a surface and a light; left out: `tinted` in `whitted`, `opaque` in the other models.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shadows: Option<Shadows>,
     /// The curve to 8 and 16 bit.
     #[serde(default)]
     pub transfer: Transfer,
@@ -49,10 +50,18 @@ impl Render {
             max_depth: default_depth(),
             min_throughput: MIN_THROUGHPUT,
             bands: BANDS,
-            shadows: Shadows::default(),
+            shadows: None,
             transfer: Transfer::default(),
             rounding: Rounding::default(),
         }
+    }
+
+    /// What stands between a surface and a light, also where that is left out.
+    pub fn shadows(&self) -> Shadows {
+        self.shadows.unwrap_or(match self.integrator {
+            Integrator::Whitted => Shadows::Tinted,
+            Integrator::Lecture | Integrator::Course2018 | Integrator::Course2020 => Shadows::Opaque,
+        })
     }
 }
 
@@ -71,13 +80,12 @@ pub enum Integrator {
 }
 
 /// What stands between a surface and a light.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Shadows {
     /// Nothing: every light reaches every surface that faces it.
     Off,
     /// Anything at all blocks a light, transparent or not.
-    #[default]
     Opaque,
     /// `whitted`: light goes straight through transparent things, and what they reflect and absorb is lost.
     Tinted,

@@ -52,6 +52,8 @@ codes! {
     StrayExit = "W007" "stray-exit",
     /// Solids of the same priority and different media that cross each other.
     Overlap = "W008" "overlap",
+    /// A light that stands on a surface, as far as hits can tell.
+    LightOnSurface = "W010" "light-on-surface",
     /// A line that starts with an unknown word.
     UnknownKeyword = "W101" "unknown-keyword",
     /// The same setting given twice; the last one counts.

@@ -4,7 +4,7 @@ use super::camera::CameraRays;
 use super::hits::Hits;
 use super::interfaces::{FindInterfaces, Ways};
 use super::lecture::{self, Blend};
-use super::media::Media;
+use super::media::{Media, WHITE};
 use super::observer::Observer;
 use super::queue::{Generation, RayKind, RayQueue};
 use super::shading::{self, ShadowRays};
@@ -13,7 +13,7 @@ use super::tree::{Ended, mean};
 use super::whitted;
 use crate::film::{Crop, Rgb};
 use crate::geometry::bvh::Packet;
-use crate::lanes::{Kernel, Lanes};
+use crate::lanes::{Kernel, Lanes, index};
 use crate::scene::Integrator;
 use crate::world::World;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -278,9 +278,9 @@ impl<'a, L: Lanes, O: Observer> Tracer<'a, L, O> {
         let mut planned = if too_deep { Vec::new() } else { self.rays_of.clone() };
         for row in 0..children.len() {
             let pixel = children.pixel(row);
-            let Rgb { r, g, b } = children.loads::<f64>(row).weight.throughput();
-            let throughput = Rgb::new(r.abs(), g.abs(), b.abs());
-            let too_little = throughput.r.max(throughput.g).max(throughput.b) < least;
+            let load = children.loads::<f64>(row);
+            let throughput = load.weight.throughput();
+            let too_little = least > 0.0 && self.part_carried(throughput, index(load.band) as u32) < least;
             let too_many = planned.get(pixel).is_some_and(|&rays| rays >= RAYS_PER_PIXEL);
             if too_deep || too_little || too_many {
                 let why = match (too_deep, too_little) {
@@ -289,8 +289,8 @@ impl<'a, L: Lanes, O: Observer> Tracer<'a, L, O> {
                     (false, false) => Ended::Rays,
                 };
                 self.observer.ended(children, row, why, &self.media);
-                self.lost[pixel] = self.lost[pixel] + Rgb::new(r, g, b);
-                self.lost_sizes[pixel] += throughput.mean();
+                self.lost[pixel] = self.lost[pixel] + throughput;
+                self.lost_sizes[pixel] += Rgb::from(throughput.to_array().map(f64::abs)).mean();
                 self.statistics.lost.rays += 1;
             } else {
                 planned[pixel] += 1;
@@ -299,6 +299,14 @@ impl<'a, L: Lanes, O: Observer> Tracer<'a, L, O> {
         }
         std::mem::swap(children, &mut kept);
         self.spare.push(kept);
+    }
+
+    /// What a ray carries of what one of its band of light could, in the channel where that is most. A band is a small share of
+    /// white, of some channels next to none, and of any channel perhaps a negative one.
+    fn part_carried(&self, throughput: Rgb, band: u32) -> f64 {
+        let whole = if band == WHITE { Rgb::gray(1.0) } else { self.world.bands[band as usize].weight };
+        let parts = throughput.to_array().into_iter().zip(whole.to_array());
+        parts.map(|(carried, whole)| if whole == 0.0 { 0.0 } else { (carried / whole).abs() }).fold(0.0, f64::max)
     }
 
     fn count_lost_light(&mut self) {

@@ -264,7 +264,11 @@ impl Ways {
         }
         let (origin, dir) = packet.ways::<f64>(ray);
         let enters = world.enters(primitive as usize, solid, origin, dir, t);
-        if enters && t > self.clear[ray] && media.contains(before, solid) && self.leave_where_it_starts(media, packet, ray) {
+        if enters
+            && t > self.clear[ray]
+            && media.contains(before, solid)
+            && self.leave_where_it_starts(media, packet, ray)
+        {
             // Nothing is entered twice: there was a way out.
             return self.meet(media, packet, ray, pixel, statistics);
         }

@@ -10,6 +10,7 @@ use crate::film::Rgb;
 use crate::geometry::{Bounds, Vec3, triangle};
 use crate::optics::absorption::transmittance_rgb;
 use crate::optics::fresnel::fresnel_dielectric;
+use crate::optics::thin::slanted_pass;
 use crate::world::{Medium, NO_SOLID, World};
 use std::collections::BTreeMap;
 
@@ -178,13 +179,16 @@ impl<'a> Media<'a> {
 
     /// What of the light from `distance` away reaches a point in this set, straight through what is transparent: black behind
     /// an opaque surface. At each interface the light loses what Fresnel reflects at the angle of its straight way on the side
-    /// of the thinner medium, so that a rim is not black; between them, what the media absorb.
+    /// of the thinner medium, so that a rim is not black; between them, what the media absorb. Between parallel faces they do
+    /// so over the refracted way, as in a plate or a stack of plates, elsewhere over the straight one.
     pub(super) fn light_along(&mut self, way: &Leaving, distance: f64, mut set: u32) -> Rgb {
         let (world, clearance) = (self.world, self.world.clearance);
         let mut crossings = std::mem::take(&mut self.crossings);
         crossings.clear();
         world.tree.crossings(way.origin, way.dir, [-world.behind, distance], &mut crossings);
         let (mut light, mut since) = (Rgb::gray(1.0), 0.0);
+        // The interface before, and the index in front of the stack of parallel ones that it belongs to.
+        let mut last: Option<((usize, Vec3), f64)> = None;
         // What lies in one place is one interface, as for all rays.
         for place in crossings.chunk_by(|a, b| b.0 - a.0 <= clearance) {
             let (t, first) = place[0];
@@ -215,9 +219,12 @@ impl<'a> Media<'a> {
                     light = light * world.lets_through(primitive as usize, way.origin + way.dir * t);
                 }
                 let (before, after) = (*self.medium(set), *self.medium(next));
-                light = light * transmittance_rgb::<f64>(before.sigma_a, t - since);
-                since = t;
-                let cos_theta_i = world.geometric_normal(first as usize, way.origin + way.dir * t).dot(way.dir).abs();
+                let (hit, straight) = ((first as usize, way.origin + way.dir * t), t - since);
+                let cos_theta_i = world.geometric_normal(hit.0, hit.1).dot(way.dir).abs();
+                let stack = last.filter(|&(other, _)| world.are_parallel([other, hit], way.dir)).map(|(_, eta)| eta);
+                let length = stack.map_or(straight, |eta| refracted_way(straight, cos_theta_i, before.eta / eta));
+                light = light * transmittance_rgb::<f64>(before.sigma_a, length);
+                (since, last) = (t, Some((hit, stack.unwrap_or(before.eta))));
                 let eta = before.eta.max(after.eta) / before.eta.min(after.eta);
                 light = light * (1.0 - fresnel_dielectric(cos_theta_i, eta));
             }
@@ -306,4 +313,11 @@ impl<'a> Media<'a> {
     pub fn medium(&self, set: u32) -> &Medium {
         &self.sets[set as usize].medium
     }
+}
+
+/// Length of the refracted way between two parallel faces that are `straight` apart along a straight one. `eta` is the index
+/// between them relative to where that is the way of the light. A way that cannot be refracted stays straight.
+fn refracted_way(straight: f64, cos_theta_i: f64, eta: f64) -> f64 {
+    let length = slanted_pass(straight * cos_theta_i, cos_theta_i, eta);
+    if length.is_finite() { length } else { straight }
 }

@@ -130,10 +130,13 @@ impl RayQueue {
             return;
         }
         let Rays { origin: o, dir: d, load } = *rays;
-        let Load { weight: Weight { attenuation: a, factor: f }, t_min, source, parent, pixel, medium, band, back } = load;
+        let Load { weight: Weight { attenuation: a, factor: f }, t_min, source, parent, pixel, medium, band, back } =
+            load;
         let before = self.len();
-        let row =
-            [o.x, o.y, o.z, d.x, d.y, d.z, a.r, a.g, a.b, f.r, f.g, f.b, t_min, source, parent, pixel, medium, band, back];
+        let row = [
+            o.x, o.y, o.z, d.x, d.y, d.z, a.r, a.g, a.b, f.r, f.g, f.b, t_min, source, parent, pixel, medium, band,
+            back,
+        ];
         self.rays.push(mask, row);
         self.count(kind, self.len() - before);
     }

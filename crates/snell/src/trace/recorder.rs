@@ -135,7 +135,7 @@ impl Recorder {
 
 /// What lies between a hit and a light, up to what blocks it.
 fn between(world: &World, hit: &Batch<'_, f64>, wi: Vec3, distance: f64) -> Vec<(u32, f64)> {
-    if world.render.shadows == Shadows::Off {
+    if world.render.shadows() == Shadows::Off {
         return Vec::new();
     }
     let real_optics = world.render.integrator == Integrator::Whitted;

@@ -1,8 +1,8 @@
 //! The local colour of the hits: ambient light, then light by light, with shadows.
 
 use super::hits::{Batch, Hits};
-use super::lecture::T_MIN;
 use super::leaving::{Leaving, back, until_clear};
+use super::lecture::T_MIN;
 use super::media::{Media, OUTSIDE};
 use super::observer::Observer;
 use super::whitted;
@@ -56,8 +56,8 @@ impl ShadowRays {
         self.rays.clear();
         self.lit.clear();
         self.lit.resize(hits.len().div_ceil(64), 0);
-        let with_shadows = world.render.shadows != Shadows::Off;
-        let tinted = world.render.shadows == Shadows::Tinted;
+        let with_shadows = world.render.shadows() != Shadows::Off;
+        let tinted = world.render.shadows() == Shadows::Tinted;
         self.light.clear();
         let real_optics = world.render.integrator == Integrator::Whitted;
         let mut count = 0;
@@ -152,7 +152,7 @@ impl ShadowRays {
     #[inline(always)]
     fn block<L: Lanes>(&mut self, media: &mut Media<'_>, hits: &Hits, packet: &mut Packet) {
         let world = media.world();
-        let tinted = world.render.shadows == Shadows::Tinted;
+        let tinted = world.render.shadows() == Shadows::Tinted;
         let real_optics = world.render.integrator == Integrator::Whitted;
         let shear = world.tree.has_triangles();
         for first in (0..self.rays.len()).step_by(PACKET) {

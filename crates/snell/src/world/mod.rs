@@ -1,6 +1,7 @@
 //! The compiled scene: arrays, a tree, a camera. Immutable; holds no names but for messages.
 
 mod camera;
+mod lamp;
 mod light;
 mod mesh;
 mod solid;
@@ -159,6 +160,7 @@ impl World {
             }
         }
         world.build_tree(&parts, quality, threads).map_err(|problem| vec![problem])?;
+        world.find_lights_on_surfaces(scene, &parts);
         Ok(world)
     }
 

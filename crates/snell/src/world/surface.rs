@@ -112,7 +112,7 @@ impl World {
     /// Does no light at all go through, by the kind of shadows that the scene has?
     pub(crate) fn blocks_light(&self, primitive: u32) -> bool {
         let primitive = primitive as usize;
-        self.render.shadows != Shadows::Tinted || (self.solid_of(primitive) == NO_SOLID && !self.is_thin(primitive))
+        self.render.shadows() != Shadows::Tinted || (self.solid_of(primitive) == NO_SOLID && !self.is_thin(primitive))
     }
 
     /// The share of light that passes the outer side of a transparent surface, without what Fresnel reflects.
@@ -162,6 +162,33 @@ impl World {
                 (to_model.apply(origin), to_model.turn(dir), self.tree.model(*model).corners(id))
             }
         }
+    }
+
+    /// Are the surfaces parallel in two places, for all that is known of them? Smoothed normals count, as a smoothed face stands
+    /// for a curved one.
+    pub(crate) fn are_parallel(&self, places: [(usize, Vec3); 2], dir: Vec3) -> bool {
+        let [(a, a_slack), (b, b_slack)] = places.map(|(primitive, point)| {
+            if primitive < self.spheres.len() {
+                return (self.geometric_normal(primitive, point), 0.0);
+            }
+            let corners = self.corners(primitive);
+            let smooth = self.smooth_normal(primitive, corners, point, dir).map(Vec3::unit);
+            (smooth.unwrap_or_else(|| triangle::normal(corners)), self.tilt(primitive, corners))
+        });
+        a.cross(b).length() <= a_slack + b_slack
+    }
+
+    /// By which angle the normal of a triangle may be off.
+    ///
+    /// Corners are known to single precision of the size of their solid, which is what model files hold, and to
+    /// [`clearance`](Self::clearance). Where all of them are off by `d`, a triangle of longest edge `l` and height `h` upon it
+    /// turns by up to `2d/h` about that edge and `2d/l` across; as `h` is at most `√3/2·l`, by less than `3d/h`.
+    fn tilt(&self, primitive: usize, [a, b, c]: [Vec3; 3]) -> f64 {
+        const SINGLE: f64 = 1.0 / (1u64 << 24) as f64;
+        let size = self.solids.get(self.solid_of(primitive) as usize).map_or(0.0, |solid| solid.bounds.diagonal());
+        let longest = (b - a).length().max((c - b).length()).max((a - c).length());
+        let height = (b - a).cross(c - a).length() / longest;
+        3.0 * (SINGLE * size + self.clearance) / height
     }
 
     fn material_in_model(&self, primitive: usize) -> u32 {

@@ -68,11 +68,12 @@ impl World {
             }
         }
         self.behind = 0.5 * self.clearance;
-        let models = parts.models.iter().zip(seen.iter().zip(shrunk)).map(|(Triangles { vertices, faces }, (seen, norm))| {
-            let shapes = Shapes { vertices, faces, ..Shapes::default() };
-            let margin = (MARGIN * (seen.diagonal() + seen.farthest())).max(norm * self.clearance);
-            Bvh::build(&shapes, vec![], margin, quality, threads)
-        });
+        let models =
+            parts.models.iter().zip(seen.iter().zip(shrunk)).map(|(Triangles { vertices, faces }, (seen, norm))| {
+                let shapes = Shapes { vertices, faces, ..Shapes::default() };
+                let margin = (MARGIN * (seen.diagonal() + seen.farthest())).max(norm * self.clearance);
+                Bvh::build(&shapes, vec![], margin, quality, threads)
+            });
         let models = models.collect();
         let touching = self.touching(&shapes, &instances);
         let shapes = Shapes { instances: &instances, ..shapes };

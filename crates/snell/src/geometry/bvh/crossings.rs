@@ -1,6 +1,7 @@
 //! All places where one ray crosses something, within a range of distances: slow, for the few rays that need it.
 
 use super::Bvh;
+use super::build::MOST_WAITING;
 use super::node::{Child, Kind, Node, WIDTH, plane};
 use super::primitives::{SPHERE, TRIANGLE};
 use crate::geometry::ray::{Heading, axes, inverse, main_axis};
@@ -50,9 +51,6 @@ impl Line {
     }
 }
 
-/// The most that can wait on the way down: seven for each level.
-const WAITING: usize = 7 * 65 + 1;
-
 impl Bvh {
     /// Appends every crossing from `range[0]` to `range[1]`, both included: distance and primitive, by distance and then by
     /// id. `dir` of unit length.
@@ -100,7 +98,7 @@ impl Bvh {
         if self.nodes.is_empty() {
             return;
         }
-        let mut waiting = [Child::ROOT; WAITING];
+        let mut waiting = [Child::ROOT; 1 + MOST_WAITING];
         let mut count = 1;
         while count > 0 {
             count -= 1;
@@ -151,5 +149,35 @@ impl Bvh {
             let line = Line::new(origin, dir, range);
             self.models[instance.model].collect(&line, first_id + instance.first, found);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Sphere;
+    use crate::geometry::bvh::{Quality, Shapes};
+
+    /// A tree as deep as it gets, met by a ray in all of its boxes. Crowds of spheres stand around the origin, each a quarter
+    /// nearer than the one before, on the axes in turn: cut in the middle, each node splits off one crowd, down to where nodes
+    /// are cut by count, which is done with the crowd in the origin. A crowd of 35 fills seven leaves, and all leaves are so
+    /// large that it costs least to let them wait beside the rest.
+    #[test]
+    fn as_many_boxes_wait_as_the_deepest_tree_has() {
+        let mut spheres = Vec::new();
+        for i in 0..75 {
+            let scale = libm::exp2(-0.4 * f64::from(i));
+            let mut center = [0.0; 3];
+            center[i as usize % 3] = -scale;
+            spheres.extend([Sphere { center: center.into(), radius: 2.0 * scale }; 35]);
+        }
+        spheres.extend(vec![Sphere { center: Vec3::default(), radius: 1e-12 }; 50_000]);
+        let shapes = Shapes { spheres: &spheres, ..Shapes::default() };
+        let tree = Bvh::build(&shapes, vec![], 10.0, Quality::Fast, 1);
+        assert!(tree.depth > 65, "only {} levels", tree.depth);
+        let dir = Vec3::new(1.0, 1.0, 1.0).unit();
+        let mut found = Vec::new();
+        tree.crossings(dir * -9.0, dir, [0.0, 20.0], &mut found);
+        assert_eq!(found.len(), 2 * spheres.len(), "into each and out of it");
     }
 }

@@ -1,7 +1,7 @@
 //! One ray through the tree: the boxes of a node, or the primitives of a leaf, in lanes.
 
 use super::Bvh;
-use super::build::MAX_DEPTH;
+use super::build::MOST_WAITING;
 use super::node::{Block, Child, Node, WIDTH, plane};
 use super::packet::{Octant, Packet};
 use super::primitives::{SPHERE, TRIANGLE};
@@ -40,8 +40,8 @@ struct Stack {
     child: [Child; ROOM],
 }
 
-/// Every node on the way down leaves at most seven boxes waiting, and is written with a whole group of eight.
-const ROOM: usize = (WIDTH - 1) * MAX_DEPTH + 2 * WIDTH;
+/// Room for the end and what waits, and for a node at the deepest place, which is written as a whole group of eight.
+const ROOM: usize = 1 + MOST_WAITING + WIDTH;
 
 impl Bvh {
     /// Follows some rays of a packet from a node on, each its own way, near boxes first. With `ANY` a ray stops at its first

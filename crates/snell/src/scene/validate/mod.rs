@@ -160,7 +160,7 @@ fn settings(scene: &Scene, found: &mut Findings) {
         let message = format!("expected 1 to {MAX_SPP} samples per pixel, read {}", scene.render.spp);
         found.problem(place!["render", "spp"], message, "16 makes smooth edges; 1 is the lecture's grid");
     }
-    if scene.render.shadows == Shadows::Caustic {
+    if scene.render.shadows == Some(Shadows::Caustic) {
         let message = "light that glass focuses is not built yet";
         found.problem(
             place!["render", "shadows"],
@@ -208,7 +208,7 @@ fn only_whitted(scene: &Scene, found: &mut Findings) {
         unused(at("abbe"), m.abbe.is_some());
         unused(at("thickness"), m.thickness.is_some());
     }
-    if scene.render.shadows == Shadows::Tinted {
+    if scene.render.shadows == Some(Shadows::Tinted) {
         let message = "shadows `tinted` need the integrator `whitted`";
         found.problem(place!["render", "shadows"], message, "choose `opaque` or `off`, or integrator = \"whitted\"");
     }

@@ -11,7 +11,7 @@ mod division;
 mod item;
 mod reinsertion;
 
-use super::node::Tree;
+use super::node::{Tree, WIDTH};
 use crate::geometry::bounds::OuterBox;
 use binned::{Bins, Grid, Split};
 use collapse::{Binary, Costs, Piece};
@@ -22,6 +22,8 @@ use rayon::prelude::*;
 const SAH_DEPTH: usize = 64;
 /// No tree is deeper: no way down passes more nodes. Real ones have about ten levels.
 pub(super) const MAX_DEPTH: usize = SAH_DEPTH + 33;
+/// Boxes that can wait for a ray on its way down: all but one of each node that it passes.
+pub(super) const MOST_WAITING: usize = (WIDTH - 1) * MAX_DEPTH;
 /// Fewer primitives are not worth a second thread.
 const PARALLEL: usize = 1 << 12;
 

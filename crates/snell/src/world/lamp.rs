@@ -1,0 +1,122 @@
+//! Lights that stand on a surface, as far as hits can tell: whether a point is in the shadow of the lamp is left to chance.
+
+use super::World;
+use super::mesh::{Parts, Triangles};
+use crate::geometry::{Affine, Bounds, Vec3, triangle};
+use crate::scene::{Scene, Shadows, Step, Warning, WarningCode};
+
+/// A light at a place, and the nearest surface that was found so far: its distance and primitive.
+struct Lamp {
+    number: usize,
+    at: Vec3,
+    nearest: Option<(f64, u32)>,
+}
+
+impl World {
+    /// Warns of each light whose distance from a surface is within [`clearance`](Self::clearance), in which hits may be off.
+    ///
+    /// Looks at the box of each triangle.
+    pub(super) fn find_lights_on_surfaces(&mut self, scene: &Scene, parts: &Parts) {
+        if self.render.shadows() == Shadows::Off {
+            return;
+        }
+        let lamps = self.lights.iter().enumerate().filter(|(_, light)| !light.at_infinity);
+        let mut lamps: Vec<Lamp> = lamps.map(|(number, light)| Lamp { number, at: light.at, nearest: None }).collect();
+        if lamps.is_empty() {
+            return;
+        }
+        let (clearance, mut first) = (self.clearance, self.spheres.len() as u32);
+        for (id, sphere) in (0..).zip(&self.spheres).filter(|(_, sphere)| sphere.radius > 0.0) {
+            for lamp in &mut lamps {
+                lamp.offer(((lamp.at - sphere.center).length() - sphere.radius).abs(), id, clearance);
+            }
+        }
+        let mut look_at = |triangles: &Triangles, map: Affine, bounds: Bounds| {
+            // A box of corners is larger than what is in it but for roundings, of which `clearance` has many.
+            if lamps.iter().any(|lamp| is_near(lamp.at, &bounds, 2.0 * clearance)) {
+                for (id, face) in (first..).zip(&triangles.faces) {
+                    let corners = face.map(|v| map.apply(triangles.vertices[v as usize]));
+                    let bounds = Bounds::of(corners);
+                    for lamp in lamps.iter_mut().filter(|lamp| is_near(lamp.at, &bounds, clearance)) {
+                        lamp.offer(distance(lamp.at, corners), id, clearance);
+                    }
+                }
+            }
+            first += triangles.faces.len() as u32;
+        };
+        let whole = |triangles: &Triangles| Bounds::of(triangles.vertices.iter().copied());
+        look_at(&parts.triangles, Affine::IDENTITY, whole(&parts.triangles));
+        let boxes: Vec<Bounds> = parts.models.iter().map(whole).collect();
+        for (_, _, model, map) in &parts.placed {
+            let bounds = Bounds::of(boxes[*model].corners().map(|corner| map.apply(corner)));
+            look_at(&parts.models[*model], *map, bounds);
+        }
+        for lamp in lamps {
+            let object = |(distance, id)| Some((distance, self.object_of(id)?));
+            let Some((distance, object)) = lamp.nearest.and_then(object) else { continue };
+            let name = scene.lights.get(lamp.number).and_then(|light| light.name.clone());
+            let name = name.unwrap_or_else(|| format!("light {}", lamp.number + 1));
+            let message = format!(
+                "`{name}` stands on the surface of `{}`: {distance:e} away, where hits are known to {clearance:.0e} only, so that \
+                 the surface takes its light from some points by chance, which looks like speckles; move it away, by an amount \
+                 that can be seen, to the side on which it is to shine",
+                object.name
+            );
+            let place = vec![Step::from("light"), Step::from(lamp.number), Step::from("position")];
+            self.warnings.push(Warning { code: WarningCode::LightOnSurface, place, message });
+        }
+    }
+}
+
+impl Lamp {
+    /// Takes note of a surface, if none nearer is known.
+    fn offer(&mut self, distance: f64, primitive: u32, clearance: f64) {
+        if distance <= clearance && self.nearest.is_none_or(|(nearest, _)| distance < nearest) {
+            self.nearest = Some((distance, primitive));
+        }
+    }
+}
+
+fn is_near(point: Vec3, bounds: &Bounds, distance: f64) -> bool {
+    (0..3).all(|axis| {
+        let (low, high) = (bounds.min.component(axis) - distance, bounds.max.component(axis) + distance);
+        (low..=high).contains(&point.component(axis))
+    })
+}
+
+/// From a point to a triangle: to its plane above its inside, otherwise to the nearest edge.
+fn distance(point: Vec3, [a, b, c]: [Vec3; 3]) -> f64 {
+    let normal = triangle::normal([a, b, c]);
+    let edges = [[a, b], [b, c], [c, a]];
+    let to_edge = edges.map(|[from, to]| {
+        let (edge, v) = (to - from, point - from);
+        (v - edge * (v.dot(edge) / edge.dot(edge)).clamp(0.0, 1.0)).length()
+    });
+    let to_edges = to_edge.into_iter().fold(f64::INFINITY, f64::min);
+    let above = edges.iter().all(|&[from, to]| (to - from).cross(point - from).dot(normal) >= 0.0);
+    if above { to_edges.min((point - a).dot(normal).abs()) } else { to_edges }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_point_is_as_far_from_a_triangle_as_geometry_has_it() {
+        let corners = [[0.0, 0.0, 1.0], [4.0, 0.0, 1.0], [0.0, 3.0, 1.0]].map(Vec3::from);
+        for (point, expected) in [
+            ([1.0, 1.0, 3.0], 2.0),
+            ([1.0, 1.0, 1.0], 0.0),
+            ([2.0, 1.5, -1.0], 2.0),
+            ([2.0, -3.0, 1.0], 3.0),
+            ([-3.0, -4.0, 1.0], 5.0),
+            ([7.0, 0.0, 5.0], 5.0),
+            // Beyond the long edge, across which (3, 4) points.
+            ([2.0 + 0.6, 1.5 + 0.8, 1.0], 1.0),
+        ] {
+            let found = distance(point.into(), corners);
+            // A few roundings of numbers up to 7.
+            assert!((found - expected).abs() < 4e-15, "{found} from {point:?}");
+        }
+    }
+}
