@@ -52,6 +52,8 @@ codes! {
     StrayExit = "W007" "stray-exit",
     /// Solids of the same priority and different media that cross each other.
     Overlap = "W008" "overlap",
+    /// Something between the eye and the image plane, in a model of light whose rays start on the plane.
+    BeforeImagePlane = "W009" "before-image-plane",
     /// A line that starts with an unknown word.
     UnknownKeyword = "W101" "unknown-keyword",
     /// The same setting given twice; the last one counts.

@@ -1,8 +1,8 @@
 //! The placed camera: which ray belongs to which pixel.
 
-use crate::geometry::Vec3;
+use crate::geometry::{Bounds, Vec3};
 use crate::lanes::Lanes;
-use crate::scene::{Camera, Render};
+use crate::scene::{Camera, Integrator, Render};
 
 /// A camera with its axes, ready to make rays.
 #[derive(Clone, Debug)]
@@ -16,6 +16,8 @@ pub struct CameraFrame {
     /// Width and height of the picture in pixels.
     pub size: [u32; 2],
     near: f64,
+    /// Do rays start at the eye, and not on the image plane?
+    from_eye: bool,
     /// How far from its point of the grid a sample of a pixel may be, in pixels.
     spread: f64,
 }
@@ -24,8 +26,9 @@ impl CameraFrame {
     /// Places a camera that has been validated.
     pub fn new(camera: &Camera, render: &Render) -> Self {
         let (axes, bounds) = (camera.axes().unwrap_or_default(), camera.window(render.size));
+        let from_eye = render.integrator == Integrator::Whitted;
         let spread = if render.spp > 1 { 0.5 } else { 0.0 };
-        Self { eye: camera.eye.into(), axes, bounds, size: render.size, near: camera.near, spread }
+        Self { eye: camera.eye.into(), axes, bounds, size: render.size, near: camera.image_plane(), from_eye, spread }
     }
 
     /// Origin and direction of the ray through a pixel, (0, 0) on top left.
@@ -58,15 +61,29 @@ impl CameraFrame {
     /// Origins and directions of the rays through some points of the image plane.
     #[inline(always)]
     pub(crate) fn rays<L: Lanes>(&self, across: L, up: L) -> (Vec3<L>, Vec3<L>) {
+        if self.from_eye {
+            // Without the eye's place, which would cost digits far from the origin.
+            return (self.eye.splat(), self.way(across, up).unit());
+        }
         let origin = self.point(across, up);
         (origin, (origin - self.eye.splat()).unit())
     }
 
-    /// Is the image plane where `near` puts it, to three digits, in spite of rounding? Very near to the eye, or with the
-    /// eye very far from the origin, it is not, and rays have wrong directions or none.
+    /// Do rays start at the eye? In the models of the lecture and the course they start on the image plane.
+    pub fn starts_at_eye(&self) -> bool {
+        self.from_eye
+    }
+
+    /// All places where camera rays start.
+    pub(crate) fn starts(&self) -> Bounds {
+        if self.from_eye { Bounds::of([self.eye]) } else { Bounds::of(self.outermost()) }
+    }
+
+    /// Is the image plane where `near` puts it, to three digits, in spite of rounding? Very near to the eye, or with the eye very
+    /// far from the origin if rays start on the plane, it is not, and rays have wrong directions or none.
     pub(crate) fn has_image_plane(&self) -> bool {
-        let distance = (self.point(0.0, 0.0) - self.eye).length();
-        (distance / self.near + 1.0).abs() < 1e-3
+        let way = if self.from_eye { self.way(0.0, 0.0) } else { self.point(0.0, 0.0) - self.eye };
+        (way.length() / self.near + 1.0).abs() < 1e-3
     }
 
     /// The four corners of the picture on the image plane.
@@ -87,6 +104,13 @@ impl CameraFrame {
 
     fn corners_of(&self, [left, right, bottom, top]: [f64; 4]) -> [Vec3; 4] {
         [self.point(left, bottom), self.point(right, bottom), self.point(left, top), self.point(right, top)]
+    }
+
+    /// From the eye to a point of the image plane.
+    #[inline(always)]
+    fn way<L: Lanes>(&self, px: L, py: L) -> Vec3<L> {
+        let [u, v, w] = self.axes;
+        (w * self.near).splat() + u.splat() * px + v.splat() * py
     }
 
     #[inline(always)]

@@ -3,7 +3,7 @@
 use super::World;
 use crate::film::Rgb;
 use crate::geometry::ray::{Shear, axes, main_axis};
-use crate::geometry::{Affine, Vec3, triangle};
+use crate::geometry::{Affine, Bounds, Vec3, triangle};
 use crate::lanes::{Lanes, MAX_WIDTH, Mask};
 
 /// "No primitive", where an id is expected.
@@ -58,6 +58,8 @@ pub(super) struct Placement {
     pub first_solid: u32,
     pub to_world: Affine,
     pub to_model: Affine,
+    /// Its box, with some room.
+    pub bounds: Bounds,
 }
 
 impl Surfaces {

@@ -19,9 +19,9 @@ impl World {
             let message = "more than 2 billion spheres and triangles".to_owned();
             return Err(Problem { place: vec![Step::from("mesh")], message, help: None });
         }
-        // Rays start on surfaces or on the image plane; no ray origin is farther from a primitive than this.
-        let corners = Bounds::of(self.camera.outermost());
-        let mut everything = (0..shapes.count()).map(|i| shapes.bounds(i)).fold(corners, Bounds::union);
+        // Rays start at the camera or on surfaces; no ray origin is farther from a primitive than this.
+        let starts = self.camera.starts();
+        let mut everything = (0..shapes.count()).map(|i| shapes.bounds(i)).fold(starts, Bounds::union);
         let mut boxes = Vec::with_capacity(parts.placed.len());
         for (which, name, model, map) in &parts.placed {
             let Triangles { vertices, faces } = &parts.models[*model];
@@ -54,6 +54,7 @@ impl World {
                 first_solid: self.solids.len() as u32,
                 to_world: *map,
                 to_model: instance.to_model,
+                bounds: instance.bounds,
             };
             self.solids.extend(parts.solids[*model].iter().map(|solid| solid.placed(map)));
             if count > 0 {
