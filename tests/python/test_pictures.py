@@ -194,7 +194,7 @@ def test_channels_of_a_part_are_a_part_of_them() -> None:
 
 def test_what_rendering_comes_upon_is_said() -> None:
     water, glass = snell.Material(eta=1.33, ko=0), snell.Material(eta=1.5, ko=0)
-    camera = snell.Camera((0, 0, 10), (0, 0, 0), (0, 1, 0), (-0.3, 0.3, -0.3, 0.3), width=24, height=24)
+    camera = snell.Camera((0, 0, 10), (0, 0, 0), (0, 1, 0), (-0.3, 0.3, -0.3, 0.3), near=-1, width=24, height=24)
     drop = snell.Sphere((-0.5, 0, 0), 1.5, "water", name="drop")
     ball = snell.Sphere((0.5, 0, 0), 1.5, "glass", name="ball")
     scene = Scene(

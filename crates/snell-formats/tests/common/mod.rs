@@ -77,7 +77,15 @@ pub fn alike(a: &Film, b: &Film) -> usize {
 /// The real files that are tested with but not part of the project: `SNELL_DATA`, or `shared/data` beside the clone.
 pub fn data() -> Option<PathBuf> {
     let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
-    let folder = std::env::var_os("SNELL_DATA").map_or(beside, PathBuf::from);
+    present(std::env::var_os("SNELL_DATA").map_or(beside, PathBuf::from))
+}
+
+/// Small inputs that went wrong once, in `shared/cases` beside the clone.
+pub fn cases() -> Option<PathBuf> {
+    present(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/cases"))
+}
+
+fn present(folder: PathBuf) -> Option<PathBuf> {
     if folder.is_dir() {
         return Some(folder);
     }

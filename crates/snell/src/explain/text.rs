@@ -2,6 +2,7 @@
 
 use super::{Ending, ExplainedNode, ExplainedSample, Explanation, LocalLight, NodeKind, percent};
 use crate::film::transfer::{Encoding, Rounding, Transfer};
+use crate::scene::Integrator;
 use std::fmt::Write;
 
 /// How the tree is written.
@@ -56,7 +57,7 @@ pub fn text(explanation: &Explanation, style: Style) -> String {
         } else {
             text.push('\n');
         }
-        let tree = Tree::new(sample, total, style, explanation.transfer);
+        let tree = Tree::new(sample, total, style, explanation);
         let hidden = sample.nodes.len() - tree.node(&mut text, 0, "", "");
         if hidden > 0 {
             let _ = writeln!(text, "  … {hidden} more rays; --top N and --depth N show more");
@@ -83,13 +84,13 @@ struct Tree<'a> {
     sample: &'a ExplainedSample,
     total: f64,
     style: Style,
-    transfer: Transfer,
+    explanation: &'a Explanation,
     children: Vec<Vec<usize>>,
     shown: Vec<bool>,
 }
 
 impl<'a> Tree<'a> {
-    fn new(sample: &'a ExplainedSample, total: f64, style: Style, transfer: Transfer) -> Self {
+    fn new(sample: &'a ExplainedSample, total: f64, style: Style, explanation: &'a Explanation) -> Self {
         let mut children = vec![Vec::new(); sample.nodes.len()];
         for node in &sample.nodes {
             if let Some(parent) = node.parent {
@@ -109,7 +110,7 @@ impl<'a> Tree<'a> {
                 at = sample.nodes[id].parent;
             }
         }
-        Self { sample, total, style, transfer, children, shown }
+        Self { sample, total, style, explanation, children, shown }
     }
 
     fn share(&self, color: [f64; 3]) -> String {
@@ -124,8 +125,8 @@ impl<'a> Tree<'a> {
             text,
             "{before}{:>6}  {}{}",
             self.share(node.subtotal),
-            swatch(node.subtotal, self.transfer, self.style.colored),
-            line(node)
+            swatch(node.subtotal, self.explanation.transfer, self.style.colored),
+            line(node, self.explanation.integrator)
         );
         if let Some(local) = &node.local
             && mean(node.contribution) != 0.0
@@ -181,9 +182,10 @@ fn lights(local: &LocalLight) -> String {
 }
 
 /// One ray in a line.
-fn line(node: &ExplainedNode) -> String {
+fn line(node: &ExplainedNode, integrator: Integrator) -> String {
     let kind = match node.kind {
-        NodeKind::Camera => "camera ray",
+        NodeKind::Camera if integrator.starts_at_eye() => "camera ray from the eye",
+        NodeKind::Camera => "camera ray from the image plane",
         NodeKind::Mirror => "mirrored",
         NodeKind::Refracted => "refracted",
         NodeKind::Inside => "inside",

@@ -2,7 +2,7 @@
 
 use crate::geometry::{Bounds, Vec3};
 use crate::lanes::Lanes;
-use crate::scene::{Camera, Integrator, Render};
+use crate::scene::{Camera, Render};
 
 /// A camera with its axes, ready to make rays.
 #[derive(Clone, Debug)]
@@ -26,7 +26,7 @@ impl CameraFrame {
     /// Places a camera that has been validated.
     pub fn new(camera: &Camera, render: &Render) -> Self {
         let (axes, bounds) = (camera.axes().unwrap_or_default(), camera.window(render.size));
-        let from_eye = render.integrator == Integrator::Whitted;
+        let from_eye = render.integrator.starts_at_eye();
         let spread = if render.spp > 1 { 0.5 } else { 0.0 };
         Self { eye: camera.eye.into(), axes, bounds, size: render.size, near: camera.image_plane(), from_eye, spread }
     }
@@ -69,8 +69,8 @@ impl CameraFrame {
         (origin, (origin - self.eye.splat()).unit())
     }
 
-    /// Do rays start at the eye? In the models of the lecture and the course they start on the image plane.
-    pub fn starts_at_eye(&self) -> bool {
+    /// Do rays start at the eye?
+    pub(crate) fn starts_at_eye(&self) -> bool {
         self.from_eye
     }
 
@@ -130,9 +130,12 @@ mod tests {
     use super::*;
     use crate::scene::Integrator;
 
+    fn camera(eye: [f64; 3], look_at: [f64; 3]) -> Camera {
+        Camera::new(eye, look_at, [0.0, 1.0, 0.0], [-2.0, 4.0, -1.0, 3.0], -5.0)
+    }
+
     fn frame(size: [u32; 2]) -> CameraFrame {
-        let camera = Camera::new([0.0, 0.0, 10.0], [0.0; 3], [0.0, 1.0, 0.0], [-2.0, 4.0, -1.0, 3.0], -5.0);
-        CameraFrame::new(&camera, &Render::new(Integrator::Lecture, size))
+        CameraFrame::new(&camera([0.0, 0.0, 10.0], [0.0; 3]), &Render::new(Integrator::Lecture, size))
     }
 
     #[test]
@@ -142,6 +145,26 @@ mod tests {
         assert_eq!(camera.ray(0, 0).0, Vec3::new(-2.0, 3.0, 5.0), "top left");
         assert_eq!(camera.ray(2, 4).0, Vec3::new(4.0, -1.0, 5.0), "bottom right");
         assert_eq!(camera.ray(1, 2).0, Vec3::new(1.0, 1.0, 5.0), "the middle");
+    }
+
+    /// The lecture's point of the image plane is `eye + …`, and loses digits with the eye; an eye's own rays need no such sum.
+    #[test]
+    fn rays_from_the_eye_have_the_same_directions_however_far_away() {
+        let rays = |far: f64, near: Option<f64>| {
+            let at = |[x, y, z]: [f64; 3]| [x + far, y - far, z + far];
+            let camera = Camera { fov: Some(40.0), bounds: None, near, ..camera(at([0.0, 2.0, 10.0]), at([1.0; 3])) };
+            let frame = CameraFrame::new(&camera, &Render::new(Integrator::Whitted, [5, 4]));
+            (0..20).map(|i| frame.ray(i % 5, i / 5)).collect::<Vec<_>>()
+        };
+        for far in [0.0, 1e6, 1e12] {
+            let found = rays(far, None);
+            assert!(found.iter().all(|(origin, _)| *origin == Vec3::new(far, 2.0 - far, 10.0 + far)));
+            assert!(found.iter().zip(rays(0.0, None)).all(|((_, found), (_, expected))| *found == expected), "{far}");
+        }
+        // Where the plane stands changes nothing but a few roundings of numbers below 1.
+        for (found, expected) in rays(0.0, Some(-1e3)).into_iter().zip(rays(0.0, None)) {
+            assert!(found.0 == expected.0 && (found.1 - expected.1).length() < 1e-15);
+        }
     }
 
     #[test]

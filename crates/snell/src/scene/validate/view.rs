@@ -51,7 +51,8 @@ fn window(scene: &Scene, found: &mut Findings) {
             found.problem(at("bounds"), message, "the order is left, right, bottom, top, like [-2, 2, -2, 2]");
         }
         if camera.near.is_none() && camera.fov.is_none() {
-            let help = "add `near = -distance`, how far before the eye it stands, or give `fov = degrees` instead of `bounds`";
+            let help =
+                "add `near = -distance`, how far before the eye it stands, or give `fov = degrees` instead of `bounds`";
             found.problem(at("near"), "`bounds` are measured on the image plane, and nothing says where that is", help);
         }
     }
