@@ -15,15 +15,14 @@ use snell_formats::Source;
 use snell_formats::load::{Kind, LoadOptions, load_text};
 use std::path::Path;
 
-fn read(text: String) -> Scene {
-    let read = load_text(Source::new("scene.toml", text.as_str()), Kind::Toml, Path::new("."), &LoadOptions::default());
-    read.unwrap_or_else(|reports| panic!("{reports:?}\n{text}")).scene
+fn read(text: &str) -> Scene {
+    load_text(Source::new("scene.toml", text), Kind::Toml, Path::new("."), &LoadOptions::default()).unwrap().scene
 }
 
 /// A scene of `cases/scale`, which came back empty or wrong once; `None` where these files are not.
 fn case(name: &str) -> Option<Scene> {
     let path = cases()?.join("scale").join(name);
-    Some(read(std::fs::read_to_string(path).unwrap()))
+    Some(read(&std::fs::read_to_string(path).unwrap()))
 }
 
 /// Unpolarised reflectance from the angles on both sides (Fresnel); 1 where no angle behind exists.
@@ -34,7 +33,7 @@ fn reflectance(theta_i: f64, eta: f64) -> f64 {
     }
     let (i, t) = (libm::cos(theta_i), (1.0 - sin_t * sin_t).sqrt());
     let (s, p) = ((i - eta * t) / (i + eta * t), (t - eta * i) / (t + eta * i));
-    (s * s + p * p) / 2.0
+    f64::midpoint(s * s, p * p)
 }
 
 /// A ball of 8 cm, half a metre away: which rays meet it is known, and by which angle it bends them.
@@ -42,6 +41,7 @@ fn reflectance(theta_i: f64, eta: f64) -> f64 {
 fn a_ball_of_8_cm_is_seen_whole_and_bends_light() {
     let Some(scene) = case("ball-of-8-cm.toml") else { return };
     let (eye, center, radius) = (Vec3::from(scene.camera.eye), Vec3::new(0.0, 0.05, 0.0), 0.04);
+    let light = scene.background;
     let world = World::new(&scene).unwrap();
     let mut met = 0;
     for (x, y) in (0..64 * 64).map(|i| (i % 64, i / 64)) {
@@ -53,7 +53,7 @@ fn a_ball_of_8_cm_is_seen_whole_and_bends_light() {
         assert!((impact - 1.0).abs() > 1e-12);
         assert_eq!(first.hit.is_some(), impact < 1.0, "{x},{y}");
         // Glass that takes nothing away, in an even light, is invisible but for what was not followed.
-        assert!(close(radiance + tree.lost * world_light(), world_light(), 1e-12), "{x},{y}: {radiance:?}");
+        assert!(close(radiance + tree.lost * light, light, 1e-12), "{x},{y}: {radiance:?}");
         let Some(hit) = &first.hit else { continue };
         met += 1;
         // v − √(r² − b²) from the eye on, each to a few roundings of 0.5 in a root of at least 1e-3.
@@ -72,10 +72,6 @@ fn a_ball_of_8_cm_is_seen_whole_and_bends_light() {
     let across = sin / (1.0 - sin * sin).sqrt() / libm::tan(15f64.to_radians()) * 31.5;
     let (area, circle) = (std::f64::consts::PI * across * across, 2.0 * std::f64::consts::PI * across);
     assert!((f64::from(met) - area).abs() < circle, "{met} {area}");
-}
-
-fn world_light() -> Rgb {
-    Rgb::new(0.2, 0.3, 0.4)
 }
 
 /// An eye in the middle of a ball of water in white light: it absorbs from the eye on. Each ray goes along a diameter; of what
@@ -102,7 +98,7 @@ fn a_diver_sees_snells_window() {
     let mut within = 0;
     for (i, pixel) in film.pixels.iter().enumerate() {
         let (x, y) = ((i % 121) as f64 - 60.0, (i / 121) as f64 - 60.0);
-        let theta = libm::atan(x.hypot(y) * step);
+        let theta = libm::atan(libm::hypot(x, y) * step);
         // One over the root of the distance to the critical angle is how fast the reflectance changes there.
         assert!((theta - critical).abs() > 1e-7);
         within += usize::from(theta < critical);
@@ -223,23 +219,17 @@ faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]"),
 fn at_scale((_, settings, view, objects): (&str, &str, &str, &str), factor: f64) -> Scene {
     let head = format!("snell = 1\nambient = 0.3\n[render]\n{settings}\nsize = [64, 64]\n[camera]\n{view}");
     let text = format!("{head}{ROOM}{objects}");
-    let mut marked = text.split_inclusive(['~', '/']);
-    let mut scaled = String::new();
-    let mut mark = None;
-    for part in &mut marked {
-        let next = part.chars().last().filter(|c| "~/".contains(*c));
-        let part = part.trim_end_matches(['~', '/']);
-        let digits =
-            if mark.is_some() { part.find(|c: char| !"0123456789.-".contains(c)).unwrap_or(part.len()) } else { 0 };
-        match (mark, part[..digits].parse::<f64>()) {
-            (Some('~'), Ok(length)) => scaled += &format!("{:?}", length * factor),
-            (Some(_), Ok(number)) => scaled += &format!("{:?}", number / factor),
-            _ => {}
-        }
-        scaled += &part[digits..];
-        mark = next;
+    let (mut scaled, mut rest) = (String::new(), text.as_str());
+    while let Some(at) = rest.find(['~', '/']) {
+        let (before, marked) = rest.split_at(at);
+        let after = &marked[1..];
+        let end = after.find(|c: char| !"0123456789.-".contains(c)).unwrap_or(after.len());
+        let number: f64 = after[..end].parse().unwrap();
+        let number = if marked.starts_with('~') { number * factor } else { number / factor };
+        scaled = scaled + before + &format!("{number:?}");
+        rest = &after[end..];
     }
-    read(scaled)
+    read(&(scaled + rest))
 }
 
 /// Is `thing` what at least a twentieth of the picture shows first, so that there is something to compare?
@@ -316,9 +306,9 @@ fn what_stands_before_the_image_plane_is_said() {
         }
         assert_eq!(warned("whitted", "near = ~-5.3", balls, factor), []);
     }
-    let many: String = (1..=5)
-        .map(|i| format!("[[sphere]]\nname = 'b{i}'\ncenter = [~0.26, ~1.1, ~5]\nradius = ~0.{i}\nmaterial = 'red'\n"))
-        .collect();
+    let ball =
+        |i| format!("[[sphere]]\nname = 'b{i}'\ncenter = [~0.26, ~1.1, ~5]\nradius = ~0.{i}\nmaterial = 'red'\n");
+    let many = [1, 2, 3, 4, 5].map(ball).concat();
     let found = warned("lecture", "near = ~-2", &many, 1.0);
     assert!(found[0].message.contains("`b1`, `b2`, `b3` and 2 more"), "{}", found[0].message);
     // Meshes in several places are looked at where they stand.

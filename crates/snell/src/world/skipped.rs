@@ -18,14 +18,13 @@ impl World {
         let mut names: Vec<&str> = Vec::new();
         for object in self.objects.iter().filter(|object| object.count > 0) {
             let first = object.first as usize;
-            let stands_there = match self.spheres.get(first) {
-                Some(sphere) => skipped.meets_sphere(sphere),
-                None => {
-                    let place = self.placement(first).map(|(place, _)| place.bounds.corners());
-                    let mut triangles = first..first + object.count as usize;
-                    !place.is_some_and(|corners| skipped.leaves_out(&corners))
-                        && triangles.any(|id| skipped.meets_triangle(self.corners(id)))
-                }
+            let stands_there = if let Some(sphere) = self.spheres.get(first) {
+                skipped.meets_sphere(sphere)
+            } else {
+                let place = self.placement(first).map(|(place, _)| place.bounds.corners());
+                let mut triangles = first..first + object.count as usize;
+                !place.is_some_and(|corners| skipped.leaves_out(&corners))
+                    && triangles.any(|id| skipped.meets_triangle(self.corners(id)))
             };
             if stands_there {
                 names.push(&object.name);
