@@ -47,6 +47,13 @@ pub fn mean(color: [f64; 3]) -> f64 {
     color.iter().sum::<f64>() / 3.0
 }
 
+/// A length or a coordinate in at most six digits, whatever its unit.
+pub fn six_digits(value: f64) -> String {
+    let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
+    let text = format!("{rounded:?}");
+    text.strip_suffix(".0").unwrap_or(&text).to_owned()
+}
+
 /// Title, sentence, and the tree of each sample.
 pub fn text(explanation: &Explanation, style: Style) -> String {
     let mut text = head(explanation, style.colored);
@@ -199,7 +206,7 @@ fn line(node: &ExplainedNode, integrator: Integrator) -> String {
     }
     match &node.hit {
         Some(hit) => {
-            let _ = write!(text, " → {} after {:.4}, at {:.1}°", hit.object, hit.t, hit.angle_in);
+            let _ = write!(text, " → {} after {}, at {:.1}°", hit.object, six_digits(hit.t), hit.angle_in);
             if hit.total_reflection {
                 text += ", total reflection";
             } else if let Some(out) = hit.angle_out {
@@ -221,4 +228,14 @@ fn line(node: &ExplainedNode, integrator: Integrator) -> String {
 
 fn ended(text: &mut String, why: &str, bound: [f64; 3]) {
     let _ = write!(text, ", not followed: {why}; it could have added {:.5} at most", mean(bound));
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn lengths_have_six_digits_in_any_unit() {
+        let lengths = [38.012_345, 0.462_512_34, 5.0, -999_999.7, 3.801_234_5e-9, 3.801_234_5e15, 0.0];
+        let shown = ["38.0123", "0.462512", "5", "-1000000", "3.80123e-9", "3801230000000000", "0"];
+        assert_eq!(lengths.map(super::six_digits), shown);
+    }
 }
