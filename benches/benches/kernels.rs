@@ -4,7 +4,7 @@
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use snell::film::Rgb;
-use snell::geometry::ray::{Shear, axes, main_axis};
+use snell::geometry::ray::{Heading, axes, main_axis};
 use snell::geometry::{Vec3, sphere, triangle};
 use snell::lanes::{Kernel, LaneWidth, Lanes, Mask, dispatch, pow};
 use snell::optics::phong::{self, Surface};
@@ -49,7 +49,7 @@ impl Kernel for All<'_> {
             let dir = Vec3::new(column(3), column(4), column(5));
             let value = match self.what {
                 What::Sphere => sphere::intersect(origin, dir, center, one).0,
-                What::Triangle => triangle::intersect(origin, &Shear::new(dir), corners).t,
+                What::Triangle => triangle::intersect(origin, &Heading::new(dir), corners).t,
                 What::Mirror => reflect(-dir, origin).x,
                 What::ThroughSphere => through_sphere(origin, -dir, -dir, center, one, eta).1.x,
                 What::Power => pow(dir.z, spow),

@@ -18,7 +18,7 @@ def ray(scene: Scene, start, degrees: float = 0.0, depth: int = 3, least: float 
     """
     start, angle = np.asarray(start, dtype=float), np.radians(degrees)
     ahead = np.array((np.cos(angle), np.sin(angle), 0.0))
-    camera = Camera(start - ahead, start, (0, 0, 1), fov=1, near=-1, width=1, height=1)
+    camera = Camera(start, start + ahead, (0, 0, 1), fov=1, width=1, height=1)
     settings = Render("whitted", max_depth=depth, min_throughput=least, bands=bands)
     return scene.replace(camera=camera, settings=settings).render(progress=False).explain(0, 0)
 

@@ -24,8 +24,9 @@ class Camera(Value):
         Where the eye is, a point that it looks at, and a direction that is up in the picture.
     bounds : (4,), optional
         Left, right, bottom and top of the picture on the image plane; or `fov`.
-    near : float
-        Where the image plane is: negative, in front of the eye.
+    near : float, optional
+        Where the image plane is: negative, in front of the eye. Needed with `bounds`; with `fov` a tenth of the way to `look_at`
+        if left out.
     far : float, optional
         Ignored, as in the lecture.
     width, height : int, optional
@@ -45,7 +46,7 @@ class Camera(Value):
     look_at: Vector
     up: Vector
     bounds: Vector | None = None
-    near: float = -1.0
+    near: float | None = None
     far: float | None = None
     width: int | None = None
     height: int | None = None

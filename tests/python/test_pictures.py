@@ -194,7 +194,7 @@ def test_channels_of_a_part_are_a_part_of_them() -> None:
 
 def test_what_rendering_comes_upon_is_said() -> None:
     water, glass = snell.Material(eta=1.33, ko=0), snell.Material(eta=1.5, ko=0)
-    camera = snell.Camera((0, 0, 10), (0, 0, 0), (0, 1, 0), (-0.3, 0.3, -0.3, 0.3), width=24, height=24)
+    camera = snell.Camera((0, 0, 10), (0, 0, 0), (0, 1, 0), (-0.3, 0.3, -0.3, 0.3), near=-1, width=24, height=24)
     drop = snell.Sphere((-0.5, 0, 0), 1.5, "water", name="drop")
     ball = snell.Sphere((0.5, 0, 0), 1.5, "glass", name="ball")
     scene = Scene(
@@ -207,6 +207,9 @@ def test_what_rendering_comes_upon_is_said() -> None:
     with pytest.warns(snell.SnellWarning, match="W008 overlap: `ball` and `drop` overlap"):
         picture = scene.render()
     assert any("W008" in remark for remark in picture.remarks)
+    # What is known before is said before: the ball of the lecture, cut open by an image plane that stands in its middle.
+    with pytest.warns(snell.SnellWarning, match="W009 before-image-plane: .* something of `glass`, which"):
+        snell.scenes["lecture/default"].with_("camera.near", -50).render(width=8)
     # Lost light is nothing to be warned of, and is known.
     mirrors = snell.scenes["lecture/diamond-depth-1"].render(width=64)
     assert [remark[:15] for remark in mirrors.remarks] == ["W202 lost-light"]

@@ -3,6 +3,7 @@
 use crate::args::RenderArgs;
 use crate::say::{Failure, OrFail, SCENE};
 use serde::{Deserialize, Serialize};
+use snell::explain::text::six_digits;
 use snell::film::Crop;
 use snell::scene::{Integrator, Render, Rounding, Scene, Shadows, Transfer};
 use snell_formats::driver::Dialect;
@@ -184,10 +185,10 @@ impl Recipe {
             render.size = size;
             return None;
         }
-        let [left, right, bottom, top] = scene.resize(size)?;
+        let bounds = scene.resize(size)?.map(six_digits).join(", ");
         Some(format!(
             "{} x {} has another shape than the scene: to keep pixels square the bounds are widened to \
-             [{left:.4}, {right:.4}, {bottom:.4}, {top:.4}] (--stretch leaves them)",
+             [{bounds}] (--stretch leaves them)",
             size[0], size[1]
         ))
     }

@@ -1,6 +1,7 @@
 //! What `snell check` found, for people and for programs.
 
 use serde_json::{Value, json};
+use snell::explain::text::six_digits;
 use snell::geometry::solid::{Component, EdgePlace, FacePlace, Found, Orientation, RepairLog, Report, Verdict};
 use snell::geometry::{TriangleMesh, Vec3};
 use std::fmt::Write;
@@ -28,7 +29,7 @@ pub fn as_text(name: &str, mesh: &TriangleMesh, report: &Report, advice: &str) -
     line("vertices", format!("{}{apart}", report.vertices));
     line("edges", format!("{}, Euler number {}", report.edges, report.euler()));
     if report.is_solid() {
-        line("volume", short(report.volume()));
+        line("volume", six_digits(report.volume()));
     }
     for (number, component) in report.components.iter().take(COMPONENTS).enumerate() {
         line("component", format!("{number}: {}", about(component)));
@@ -100,9 +101,9 @@ fn about(c: &Component) -> String {
         _ if !c.orientable => "closed, not orientable".to_owned(),
         _ if !c.is_oriented() => "closed, at odds with itself".to_owned(),
         (Orientation::None, ..) => "flat".to_owned(),
-        (Orientation::Inward, true, _) => format!("a cavity of {}", short(-c.volume)),
+        (Orientation::Inward, true, _) => format!("a cavity of {}", six_digits(-c.volume)),
         (.., true) => "inside out".to_owned(),
-        _ => format!("a solid of {}", short(c.volume)),
+        _ => format!("a solid of {}", six_digits(c.volume)),
     };
     format!("{look}, {} faces, Euler number {}, {} to {}", c.faces, c.euler(), at(c.bounds.min), at(c.bounds.max))
 }
@@ -117,14 +118,7 @@ fn face(f: &FacePlace) -> String {
 }
 
 fn at(p: Vec3) -> String {
-    format!("({}, {}, {})", short(p.x), short(p.y), short(p.z))
-}
-
-/// Six digits.
-fn short(value: f64) -> String {
-    let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
-    let text = format!("{rounded:?}");
-    text.strip_suffix(".0").unwrap_or(&text).to_owned()
+    format!("({}, {}, {})", six_digits(p.x), six_digits(p.y), six_digits(p.z))
 }
 
 /// What was done, one line for each thing.

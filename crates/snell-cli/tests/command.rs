@@ -356,6 +356,7 @@ fn what_is_wrong_with_a_scene_is_shown_in_the_scene() {
         ("size = [512, 512]", "size = [512, 0]", "size =", "512 x 0 pixels"),
         ("size = [512, 512]", "size = [4000000000, 4000000000]", "", "GiB"),
         ("near = -5", "near = 5", "near = 5", "must be negative"),
+        ("near = -5", "", "[camera]", "nothing says where that is"),
         ("position = [20, 100, 100]", "", "[[light]]", "needs a position or a direction"),
         ("integrator = \"lecture\"", "", "[render]", "which model of light"),
         ("snell = 1", "snell = 2", "snell = 2", "this program reads version 1"),

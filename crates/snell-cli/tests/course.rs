@@ -119,6 +119,7 @@ fn odd_drivers_of_other_students() {
         (head.to_owned() + &sphere("1", ".5"), 0, ""),
         (head.to_owned() + &sphere("0.0", ".5"), 0, "W001 invisible-sphere"),
         (head.to_owned() + &sphere("1", "1.5"), 0, "W003 opacity-above-one"),
+        (head.replace("d 5", "d 10") + &sphere("1", ".5"), 0, "W009 before-image-plane"),
         (head.to_owned() + &sphere("1e10", "1"), 0, ""),
         (head.to_owned() + &sphere("-1", "1"), 3, "must not be negative, read -1"),
         (head.to_owned() + "sphere 0 0 0 1 .1 .2 .3 .1 .1 .1 .1 .1\r\n", 3, "13 or 16 values, read 12"),

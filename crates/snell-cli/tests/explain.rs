@@ -21,7 +21,7 @@ lecture/default, pixel 190,300 of 512 x 512, lecture
 (0.1121, 0.4890, 0.1121) #1d7d1d
 Green because 53 % of this pixel is the sphere `green`, seen through `glass` (in at 43.1° → 20.0°); 47 % is the sphere `glass` itself.
 
- 100 %  camera ray → glass after 38.0123, at 43.1° → 20.0°
+ 100 %  camera ray from the image plane → glass after 38.0123, at 43.1° → 20.0°
 │       47 % its own colour: ambient, left, right
 ├─  53 %  refracted → green after 19.1487, at 7.5°
 │ │       53 % its own colour: ambient, left, right

@@ -164,7 +164,7 @@ fn interfaces_show_what_solids_show() {
     for scene in [&mut solids, &mut split] {
         scene.camera.eye = [0.1, 0.3, 0.5];
         scene.camera.bounds = Some([-0.1, 0.1, -0.1, 0.1]);
-        scene.camera.near = -0.1;
+        scene.camera.near = Some(-0.1);
     }
     let (a, b) = (picture(&solids), picture(&split));
     assert!(alike(&a, &b) * 1000 >= a.pixels.len() * 999, "{} of {}", alike(&a, &b), a.pixels.len());

@@ -125,7 +125,7 @@ fn a_scene_scaled_or_moved_is_the_same_picture() {
 fn scaled(scene: &Scene, map: impl Fn(f64) -> f64, factor: f64) -> Scene {
     let mut scene = scene.clone();
     (scene.camera.eye, scene.camera.look_at) = (scene.camera.eye.map(&map), scene.camera.look_at.map(&map));
-    scene.camera.near *= factor;
+    scene.camera.near = scene.camera.near.map(|near| near * factor);
     scene.camera.bounds = scene.camera.bounds.map(|bounds| bounds.map(|b| b * factor));
     for light in &mut scene.lights {
         light.position = light.position.map(|p| p.map(&map));

@@ -30,7 +30,7 @@ fn an_angle_of_view_lies_between_the_outermost_rows() {
     for size in [[64, 48], [30, 90], [2, 2]] {
         let mut scene = furnace(2);
         scene.render.size = size;
-        let camera = Camera { bounds: None, fov: Some(50.0), near: -0.7, ..scene.camera.clone() };
+        let camera = Camera { bounds: None, fov: Some(50.0), near: Some(-0.7), ..scene.camera.clone() };
         scene.camera = camera;
         let world = World::new(&scene).unwrap();
         let [last_x, last_y] = size.map(|n| n - 1);

@@ -12,8 +12,8 @@ const CHUNK: usize = 16 * PACKET;
 
 /// Rays in columns, all of the same length. Neighbours that go nearly the same way are traced faster.
 ///
-/// A ray with a NaN hits nothing. The boxes of the tree have margins for rays that start within the box of the scene, its
-/// image plane included: from much farther away a hit at the very rim of a primitive may be missed, by the rounding of its
+/// A ray with a NaN hits nothing. The boxes of the tree have margins for rays that start within the box of the scene and
+/// of where its camera's rays start: from much farther away a hit at the very rim of a primitive may be missed, by the rounding of its
 /// distance.
 #[derive(Clone, Debug, Default)]
 pub struct RayBatch {

@@ -44,7 +44,7 @@ pub fn far_away(offset: f64, seed: u64, flat: bool) -> Scene {
     scene.spheres.clear();
     let at = |p: [f64; 3]| p.map(|c| c + offset);
     (scene.camera.eye, scene.camera.look_at) = (at([7.3, 9.1, 30.0]), at([8.0, 8.0, 0.0]));
-    (scene.camera.near, scene.camera.bounds) = (-10.0, Some([-3.0, 3.0, -3.0, 3.0]));
+    (scene.camera.near, scene.camera.bounds) = (Some(-10.0), Some([-3.0, 3.0, -3.0, 3.0]));
     for (i, light) in scene.lights.iter_mut().enumerate() {
         light.position = Some(at([20.0 * i as f64, 25.0, 20.0]));
     }

@@ -58,7 +58,7 @@ pub fn tiny_and_huge() -> Scene {
     let step = 4.0 / 23.0; // the bounds are [-2, 2, -2, 2], and the pixels of the edges lie on them
     for pixel in 0..576u32 {
         let (x, y) = (f64::from(pixel % 24), f64::from(pixel / 24));
-        let on_plane = right * (left + x * step) + up * (top - y * step) + back * camera.near;
+        let on_plane = right * (left + x * step) + up * (top - y * step) + back * camera.image_plane();
         for i in 0..4 {
             let at = eye + on_plane * (4.0 + 12.0 * numbers.next());
             // Off the ray by up to 1.5 radii along each axis: some are hit in the middle, some at the rim, some missed.

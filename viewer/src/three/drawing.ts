@@ -16,6 +16,7 @@ import { pick, type PickedLine } from './picking';
 import { type RayState, Rays } from './rays';
 import { Stage } from './stage';
 import { stillOf } from './still';
+import { scaledNodes, scaledScene, unitFor } from './unit';
 import { fromLight, overview, throughCamera, type Viewpoint } from './viewpoints';
 
 export interface DrawingEvents {
@@ -41,6 +42,10 @@ export class Drawing {
   readonly plane: ImagePlane;
   /** Can pixels of the picture be clicked? */
   picksPixels = false;
+  /** In the drawing's own unit, like all lengths here. */
+  private readonly scene: ViewScene;
+  /** By what lengths are multiplied. */
+  private readonly unit: number;
   private readonly extent: Extent;
   private readonly objects: Objects;
   private readonly apparatus: Apparatus;
@@ -56,11 +61,13 @@ export class Drawing {
   private standing: (() => Viewpoint) | null = this.overview;
 
   constructor(
-    private readonly scene: ViewScene,
+    given: ViewScene,
     tree: RayTreeDocument | null,
     private readonly events: DrawingEvents,
   ) {
-    this.home = this.extent = extentOf(scene, strongestOf(tree));
+    this.unit = unitFor(extentOf(given, strongestOf(tree)).radius);
+    const scene = (this.scene = scaledScene(given, this.unit));
+    this.home = this.extent = extentOf(scene, this.strongest(tree));
     const transfer: Transfer = scene.transfer ?? tree?.transfer ?? 'srgb';
     this.stage = new Stage(new Vector3(...scene.camera.up).normalize(), this.extent.radius);
     this.objects = new Objects(scene, transfer, this.stage.uniforms);
@@ -83,7 +90,7 @@ export class Drawing {
   /** Prepares for the rays of a pixel. The eye stays where it is. */
   setTree(tree: RayTreeDocument | null): void {
     this.removeRays();
-    this.home = extentOf(this.scene, strongestOf(tree));
+    this.home = extentOf(this.scene, this.strongest(tree));
     this.names.set(named(this.scene, tree));
   }
 
@@ -92,9 +99,10 @@ export class Drawing {
     this.removeRays();
     const drawn = model.strongest(MAX_RAYS);
     const reach = REACH * this.extent.radius;
-    this.rays = new Rays(model, drawn, reach, this.scene.camera.eye, this.stage.uniforms);
+    const nodes = scaledNodes(model.nodes, this.unit);
+    this.rays = new Rays(model, nodes, drawn, reach, this.scene.camera.eye, this.stage.uniforms);
     this.stage.scene.add(this.rays.group);
-    this.lines = drawn.map((id) => ({ id, ...rayLine(model.nodes[id]!, reach) }));
+    this.lines = drawn.map((id) => ({ id, ...rayLine(nodes[id]!, reach) }));
     return model.nodes.length - drawn.length;
   }
 
@@ -153,6 +161,10 @@ export class Drawing {
     this.apparatus.dispose();
     this.plane.dispose();
     this.stage.dispose();
+  }
+
+  private strongest(tree: RayTreeDocument | null): RayNode[] {
+    return scaledNodes(strongestOf(tree), this.unit);
   }
 
   private stand(view: () => Viewpoint, smoothly: boolean): void {

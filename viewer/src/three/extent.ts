@@ -34,7 +34,9 @@ export function extentOf(scene: ViewScene, nodes: RayNode[]): Extent {
   const things = [...seen, ...objects.filter(near).flat()];
   const lamps = scene.lights.flatMap(({ position }) => (position === null ? [] : [point(position)])).filter((lamp) => near([lamp]));
   const all = [...camera, ...things, ...lamps];
-  const extent = { things: things.length > 0 ? things : camera, all, ...bounds(all) };
+  const { center, radius } = bounds(all);
+  // Where all is one point, any size will do.
+  const extent = { things: things.length > 0 ? things : camera, all, center, radius: radius > 0 ? radius : 1 };
   for (const { direction } of scene.lights) if (direction !== null) all.push(new Sphere(arrowStart(direction, extent), 0));
   return extent;
 }
@@ -57,12 +59,11 @@ export function arrowStart(direction: Vec3, extent: Pick<Extent, 'center' | 'rad
   return extent.center.clone().addScaledVector(new Vector3(...direction).normalize(), extent.radius);
 }
 
-/** The middle and half the diagonal of the box around spheres. */
+/** The middle and half the diagonal of the box around spheres; 0 for a point. */
 export function bounds(spheres: Sphere[]): { center: Vector3; radius: number } {
   const box = new Box3();
   for (const sphere of spheres) box.union(sphere.getBoundingBox(new Box3()));
-  const radius = box.getSize(new Vector3()).length() / 2;
-  return { center: box.getCenter(new Vector3()), radius: radius > 0 ? radius : 1 };
+  return { center: box.getCenter(new Vector3()), radius: box.getSize(new Vector3()).length() / 2 };
 }
 
 function corners({ vertices }: { vertices: number[] }): Sphere[] {

@@ -87,7 +87,7 @@ export class Objects {
     for (const mesh of scene.meshes) {
       const flat = flatGeometry(mesh);
       this.add(new Mesh(flat, this.material(mesh, up, DoubleSide, 0)));
-      if (mesh.faces.length <= 3 * MAX_EDGE_FACES) this.creases.push(...segments(new EdgesGeometry(flat, CREASE)));
+      if (mesh.faces.length <= 3 * MAX_EDGE_FACES) this.creases.push(...creases(flat));
     }
     this.group.add(this.edges.group);
   }
@@ -135,7 +135,7 @@ export class Objects {
 }
 
 /** Each face with corners and a normal of its own. */
-function flatGeometry({ vertices, faces }: ViewMesh): BufferGeometry {
+export function flatGeometry({ vertices, faces }: ViewMesh): BufferGeometry {
   const indexed = new BufferGeometry();
   indexed.setAttribute('position', new Float32BufferAttribute(vertices, 3));
   indexed.setIndex(faces);
@@ -144,11 +144,18 @@ function flatGeometry({ vertices, faces }: ViewMesh): BufferGeometry {
   return flat;
 }
 
-function segments(edges: EdgesGeometry): [Vec3, Vec3][] {
+/** The edges of a mesh at which it is not smooth. */
+export function creases(flat: BufferGeometry): [Vec3, Vec3][] {
+  flat.computeBoundingSphere();
+  // three.js takes corners within 1e-4 for one: a millionth of the mesh, when it is as large as this.
+  const size = 100 / (flat.boundingSphere!.radius || 1);
+  const large = flat.clone().scale(size, size, size);
+  const edges = new EdgesGeometry(large, CREASE);
   const points = edges.getAttribute('position');
-  const point = (index: number): Vec3 => [points.getX(index), points.getY(index), points.getZ(index)];
+  const point = (index: number): Vec3 => [points.getX(index) / size, points.getY(index) / size, points.getZ(index) / size];
   const found: [Vec3, Vec3][] = [];
   for (let index = 0; index < points.count; index += 2) found.push([point(index), point(index + 1)]);
   edges.dispose();
+  large.dispose();
   return found;
 }

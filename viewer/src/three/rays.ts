@@ -1,7 +1,7 @@
 /** The rays of a pixel as lines, the selected one and its way through the scene brought forward. */
 
 import { Group } from 'three';
-import type { Vec3 } from '../data';
+import type { RayNode, Vec3 } from '../data';
 import { along, lineOpacity, lineWidth, rayLine, shadowLines, stepLine } from '../lines';
 import type { TreeModel } from '../model';
 import type { Theme } from '../theme';
@@ -22,9 +22,10 @@ export class Rays {
   private readonly lines: LineSet;
   private readonly marks: MarkSet;
 
-  /** `drawn` are the ids of the rays that are shown unless they are selected. */
+  /** `nodes` are those of the model where they are drawn; `drawn` the ids of the rays that are shown unless they are selected. */
   constructor(
     private readonly model: TreeModel,
+    private readonly nodes: RayNode[],
     private readonly drawn: number[],
     private readonly reach: number,
     private readonly eye: Vec3,
@@ -45,7 +46,7 @@ export class Rays {
     this.lines.set([
       ...[state.selected, state.hovered].flatMap((id) => (id === null ? [] : [this.halo(id, id === state.selected, theme)])),
       ...shaded.flatMap((id) => this.shadows(id, dim(id), theme)),
-      ...this.model.roots.map((id) => this.fromEye(id, dim(id), theme)),
+      ...this.model.roots.flatMap((id) => this.fromEye(id, dim(id), theme)),
       ...ids.flatMap((id) => this.step(id, dim(id), theme)),
       ...ids.map((id) => this.ray(id, id === state.selected, dim(id), theme)),
       ...(state.selected === null ? [] : this.normal(state.selected, theme)),
@@ -58,14 +59,15 @@ export class Rays {
     this.marks.dispose();
   }
 
-  /** Camera rays begin at the image plane; a thin line shows where they come from. */
-  private fromEye(id: number, dim: number, theme: Theme): DrawnLine {
-    const { origin } = this.model.nodes[id]!;
-    return { from: this.eye, to: origin, open: false, color: theme.rays.camera, width: 1.2, opacity: 0.8 * dim };
+  /** In the models whose rays begin at the image plane, a thin line shows where they come from. */
+  private fromEye(id: number, dim: number, theme: Theme): DrawnLine[] {
+    const { origin } = this.nodes[id]!;
+    if (origin.every((x, axis) => x === this.eye[axis])) return [];
+    return [{ from: this.eye, to: origin, open: false, color: theme.rays.camera, width: 1.2, opacity: 0.8 * dim }];
   }
 
   private ray(id: number, selected: boolean, dim: number, theme: Theme): DrawnLine {
-    const node = this.model.nodes[id]!;
+    const node = this.nodes[id]!;
     const share = this.model.share(id);
     const width = lineWidth(share) + (selected ? 1 : 0);
     const opacity = selected ? 1 : dim * lineOpacity(share);
@@ -74,31 +76,31 @@ export class Rays {
 
   /** What a model of light goes through at once is drawn as a way inside. */
   private step(id: number, dim: number, theme: Theme): DrawnLine[] {
-    const node = this.model.nodes[id]!;
-    const line = node.parent === null ? null : stepLine(this.model.nodes[node.parent]!, node);
+    const node = this.nodes[id]!;
+    const line = node.parent === null ? null : stepLine(this.nodes[node.parent]!, node);
     const share = this.model.share(id);
     return line === null ? [] : [{ ...line, color: theme.rays.inside, width: lineWidth(share), opacity: dim * lineOpacity(share) }];
   }
 
   private halo(id: number, selected: boolean, theme: Theme): DrawnLine {
     const width = lineWidth(this.model.share(id)) + 10;
-    return { ...rayLine(this.model.nodes[id]!, this.reach), color: theme.accent, width, opacity: selected ? 0.4 : 0.25 };
+    return { ...rayLine(this.nodes[id]!, this.reach), color: theme.accent, width, opacity: selected ? 0.4 : 0.25 };
   }
 
   private shadows(id: number, dim: number, theme: Theme): DrawnLine[] {
     const look = { color: theme.rays.shadow, width: 1.5, opacity: 0.9 * dim };
-    return shadowLines(this.model.nodes[id]!, this.reach).map((line) => ({ ...line, ...look, dashed: line.blocked }));
+    return shadowLines(this.nodes[id]!, this.reach).map((line) => ({ ...line, ...look, dashed: line.blocked }));
   }
 
   private normal(id: number, theme: Theme): DrawnLine[] {
-    const { hit } = this.model.nodes[id]!;
+    const { hit } = this.nodes[id]!;
     if (hit === null) return [];
     const to = along(hit.point, hit.normal, this.reach / 6);
     return [{ from: hit.point, to, open: false, color: theme.ink, width: 1.2, opacity: 0.8 }];
   }
 
   private end(id: number, selected: boolean, dim: number, theme: Theme): Mark[] {
-    const node = this.model.nodes[id]!;
+    const node = this.nodes[id]!;
     if (node.hit === null) return [];
     const size = selected ? 8 : 3 + lineWidth(this.model.share(id));
     return [{ at: node.hit.point, color: selected ? theme.ink : theme.rays[node.kind], size, opacity: dim }];

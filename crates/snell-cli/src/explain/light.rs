@@ -3,7 +3,7 @@
 use super::colored;
 use crate::say::{Failure, USAGE};
 use snell::explain::Explanation;
-use snell::explain::text::{head, mean, numbers};
+use snell::explain::text::{head, mean, numbers, six_digits};
 use snell_formats::Report;
 use std::fmt::Write;
 
@@ -27,13 +27,13 @@ pub fn text(explanation: &Explanation, name: &str) -> Result<String, Failure> {
         for node in &sample.nodes {
             let (Some(hit), Some(local)) = (&node.hit, &node.local) else { continue };
             let Some(light) = local.lights.iter().find(|light| light.name == name) else { continue };
-            let [x, y, z] = hit.point;
-            let _ = write!(text, "on {} at ({x:.4}, {y:.4}, {z:.4}): ", hit.object);
+            let at = |point: [f64; 3]| format!("({})", point.map(six_digits).join(", "));
+            let _ = write!(text, "on {} at {}: ", hit.object, at(hit.point));
             let through = light.through.join(", ");
             let _ = match (&light.blocked_by, light.block_point) {
-                (Some(blocker), Some([x, y, z])) => {
+                (Some(blocker), Some(point)) => {
                     let under = if through.is_empty() { String::new() } else { format!(", behind {through}") };
-                    writeln!(text, "blocked by {blocker} at ({x:.4}, {y:.4}, {z:.4}){under}")
+                    writeln!(text, "blocked by {blocker} at {}{under}", at(point))
                 }
                 _ if !light.facing => writeln!(text, "the surface faces away from it"),
                 _ if mean(light.transmittance) == 0.0 => {

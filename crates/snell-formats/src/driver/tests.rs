@@ -24,7 +24,7 @@ fn the_trap_of_the_bounds() {
         let driver = read(text);
         assert_eq!(driver.dialect, dialect);
         assert_eq!(driver.scene.camera.bounds, Some([-2.0, 2.0, -1.0, 1.0]), "{dialect:?}");
-        assert_eq!(driver.scene.camera.near, -5.0);
+        assert_eq!(driver.scene.camera.near, Some(-5.0));
         assert_eq!(driver.scene.camera.eye, [0.0, 0.0, 10.0]);
         assert_eq!(driver.scene.render.size, [8, 4]);
         assert!(driver.warnings.is_empty(), "{:?}", driver.warnings);

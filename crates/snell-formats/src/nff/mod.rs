@@ -3,7 +3,7 @@
 //!
 //! | NFF | scene |
 //! | --- | --- |
-//! | `v` | the camera; `hither` is where its image plane stands and rays start; `angle` counts between the middles of the first and the last row, and column, as in a scene |
+//! | `v` | the camera; `hither` is where its image plane stands, which hides nothing: rays start at the eye; `angle` counts between the middles of the first and the last row, and column, as in a scene |
 //! | `b` | the background |
 //! | `l` | a light; without a colour 1/√n for each of n, as in Haines' own writers |
 //! | `f` colour Kd Ks shine T index | `kd` = colour · Kd, `ks` = `kr` = Ks, `spow` = shine, `ko` = 1 − T, `eta` = index, or 1 if that is 0; `ka` = 0 |
@@ -219,7 +219,7 @@ impl<'a, W: Iterator<Item = Word<'a>>> Reader<'a, W> {
             return Err(self.error(self.last.clone(), message));
         };
         let distance = (Vec3::from(eye) - Vec3::from(look_at)).length();
-        // Without a hither plane the image plane stands near the eye: rays start on it.
+        // The image plane only gives directions; without a hither plane it may stand anywhere.
         let near = if hither > 0.0 {
             hither
         } else if distance > 0.0 {

@@ -15,7 +15,7 @@ fn every_entity_finds_its_place() {
     );
     let scene = &nff.scene;
     assert_eq!(scene.render.size, [40, 30]);
-    assert_eq!((scene.camera.eye, scene.camera.near), ([0.0, 0.0, 5.0], -0.5));
+    assert_eq!((scene.camera.eye, scene.camera.near), ([0.0, 0.0, 5.0], Some(-0.5)));
     // tan 45° is 1 but for a rounding.
     assert!(scene.camera.bounds.iter().flatten().all(|b| (b.abs() - 0.5).abs() < 1e-15));
     assert_eq!(scene.lights[0].color, Rgb::gray(1.0 / 2f64.sqrt()));

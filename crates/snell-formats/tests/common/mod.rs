@@ -48,10 +48,10 @@ pub fn traced(world: &World, x: u32, y: u32) -> (Rgb, RayTree) {
 pub fn tree(scene: &Scene, origin: [f64; 3], dir: [f64; 3]) -> RayTree {
     let mut scene = scene.clone();
     scene.render.size = [1, 1];
-    let (start, dir) = (Vec3::from(origin), Vec3::from(dir).unit());
-    let eye = start - dir;
+    let (eye, dir) = (Vec3::from(origin), Vec3::from(dir).unit());
+    let look_at = eye + dir;
     let up = if dir.y.abs() > 0.9 { [0.0, 0.0, 1.0] } else { [0.0, 1.0, 0.0] };
-    scene.camera = Camera::new([eye.x, eye.y, eye.z], origin, up, [-1.0, 1.0, -1.0, 1.0], -1.0);
+    scene.camera = Camera::new(origin, look_at.into(), up, [-1.0, 1.0, -1.0, 1.0], -1.0);
     traced(&World::new(&scene).unwrap(), 0, 0).1
 }
 
@@ -77,7 +77,15 @@ pub fn alike(a: &Film, b: &Film) -> usize {
 /// The real files that are tested with but not part of the project: `SNELL_DATA`, or `shared/data` beside the clone.
 pub fn data() -> Option<PathBuf> {
     let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
-    let folder = std::env::var_os("SNELL_DATA").map_or(beside, PathBuf::from);
+    present(std::env::var_os("SNELL_DATA").map_or(beside, PathBuf::from))
+}
+
+/// Small inputs that went wrong once, in `shared/cases` beside the clone.
+pub fn cases() -> Option<PathBuf> {
+    present(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/cases"))
+}
+
+fn present(folder: PathBuf) -> Option<PathBuf> {
     if folder.is_dir() {
         return Some(folder);
     }

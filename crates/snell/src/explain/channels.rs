@@ -8,7 +8,8 @@ use crate::world::World;
 /// What the camera's rays met, pixel by pixel and row by row. Of several samples the first one counts.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Channels {
-    /// How far the ray goes from the image plane, where it starts, in scene units; infinite where it meets nothing.
+    /// How far the ray goes, in scene units: from the eye in `whitted`, from the image plane in the models of the lecture and the
+    /// course; infinite where it meets nothing.
     pub depth: Vec<f64>,
     /// The normal there, of unit length and towards the ray; zero where nothing is.
     pub normal: Vec<[f64; 3]>,

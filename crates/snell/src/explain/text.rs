@@ -2,6 +2,7 @@
 
 use super::{Ending, ExplainedNode, ExplainedSample, Explanation, LocalLight, NodeKind, percent};
 use crate::film::transfer::{Encoding, Rounding, Transfer};
+use crate::scene::Integrator;
 use std::fmt::Write;
 
 /// How the tree is written.
@@ -46,6 +47,13 @@ pub fn mean(color: [f64; 3]) -> f64 {
     color.iter().sum::<f64>() / 3.0
 }
 
+/// A length or a coordinate in at most six digits, whatever its unit.
+pub fn six_digits(value: f64) -> String {
+    let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
+    let text = format!("{rounded:?}");
+    text.strip_suffix(".0").unwrap_or(&text).to_owned()
+}
+
 /// Title, sentence, and the tree of each sample.
 pub fn text(explanation: &Explanation, style: Style) -> String {
     let mut text = head(explanation, style.colored);
@@ -56,7 +64,7 @@ pub fn text(explanation: &Explanation, style: Style) -> String {
         } else {
             text.push('\n');
         }
-        let tree = Tree::new(sample, total, style, explanation.transfer);
+        let tree = Tree::new(sample, total, style, explanation);
         let hidden = sample.nodes.len() - tree.node(&mut text, 0, "", "");
         if hidden > 0 {
             let _ = writeln!(text, "  … {hidden} more rays; --top N and --depth N show more");
@@ -83,13 +91,13 @@ struct Tree<'a> {
     sample: &'a ExplainedSample,
     total: f64,
     style: Style,
-    transfer: Transfer,
+    explanation: &'a Explanation,
     children: Vec<Vec<usize>>,
     shown: Vec<bool>,
 }
 
 impl<'a> Tree<'a> {
-    fn new(sample: &'a ExplainedSample, total: f64, style: Style, transfer: Transfer) -> Self {
+    fn new(sample: &'a ExplainedSample, total: f64, style: Style, explanation: &'a Explanation) -> Self {
         let mut children = vec![Vec::new(); sample.nodes.len()];
         for node in &sample.nodes {
             if let Some(parent) = node.parent {
@@ -109,7 +117,7 @@ impl<'a> Tree<'a> {
                 at = sample.nodes[id].parent;
             }
         }
-        Self { sample, total, style, transfer, children, shown }
+        Self { sample, total, style, explanation, children, shown }
     }
 
     fn share(&self, color: [f64; 3]) -> String {
@@ -124,8 +132,8 @@ impl<'a> Tree<'a> {
             text,
             "{before}{:>6}  {}{}",
             self.share(node.subtotal),
-            swatch(node.subtotal, self.transfer, self.style.colored),
-            line(node)
+            swatch(node.subtotal, self.explanation.transfer, self.style.colored),
+            line(node, self.explanation.integrator)
         );
         if let Some(local) = &node.local
             && mean(node.contribution) != 0.0
@@ -181,9 +189,10 @@ fn lights(local: &LocalLight) -> String {
 }
 
 /// One ray in a line.
-fn line(node: &ExplainedNode) -> String {
+fn line(node: &ExplainedNode, integrator: Integrator) -> String {
     let kind = match node.kind {
-        NodeKind::Camera => "camera ray",
+        NodeKind::Camera if integrator.starts_at_eye() => "camera ray from the eye",
+        NodeKind::Camera => "camera ray from the image plane",
         NodeKind::Mirror => "mirrored",
         NodeKind::Refracted => "refracted",
         NodeKind::Inside => "inside",
@@ -197,7 +206,7 @@ fn line(node: &ExplainedNode) -> String {
     }
     match &node.hit {
         Some(hit) => {
-            let _ = write!(text, " → {} after {:.4}, at {:.1}°", hit.object, hit.t, hit.angle_in);
+            let _ = write!(text, " → {} after {}, at {:.1}°", hit.object, six_digits(hit.t), hit.angle_in);
             if hit.total_reflection {
                 text += ", total reflection";
             } else if let Some(out) = hit.angle_out {
@@ -219,4 +228,14 @@ fn line(node: &ExplainedNode) -> String {
 
 fn ended(text: &mut String, why: &str, bound: [f64; 3]) {
     let _ = write!(text, ", not followed: {why}; it could have added {:.5} at most", mean(bound));
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn lengths_have_six_digits_in_any_unit() {
+        let lengths = [38.012_345, 0.462_512_34, 5.0, -999_999.7, 3.801_234_5e-9, 3.801_234_5e15, 0.0];
+        let shown = ["38.0123", "0.462512", "5", "-1000000", "3.80123e-9", "3801230000000000", "0"];
+        assert_eq!(lengths.map(super::six_digits), shown);
+    }
 }

@@ -5,10 +5,15 @@ use crate::lanes::elementary::sin_cos_degrees;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A pinhole camera. The image plane stands in front of the eye at distance `-near`; rays start on it.
+/// Where the image plane stands if a camera with an angle of view does not say: this share of the way from the eye to the point
+/// that it looks at.
+const NEAR_SHARE: f64 = 0.1;
+
+/// A pinhole camera. The image plane stands in front of the eye at distance `-near`.
 ///
 /// `W = unit(eye − look_at)`, `U = unit(up × W)`, `V = W × U`. Pixel (i, j), row 0 on top, looks through
 /// `eye + near·W + px·U + py·V` with `px = left + i/(w−1)·(right−left)` and `py = top − j/(h−1)·(top−bottom)`.
+/// In `whitted` rays start at the eye, in the models of the lecture and the course at that point of the image plane.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Camera {
@@ -24,22 +29,25 @@ pub struct Camera {
     /// Instead of `bounds`: the angle in degrees between the highest and the lowest row of pixels, which are square then.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fov: Option<f64>,
-    /// Position of the image plane along `W`: negative, in front of the eye.
-    #[serde(default = "default_near")]
-    pub near: f64,
+    /// Position of the image plane along `W`: negative, in front of the eye. Needed with `bounds`; with `fov` a tenth of the way
+    /// from `eye` to `look_at` if left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub near: Option<f64>,
     /// Read and ignored, as in the lecture.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub far: Option<f64>,
 }
 
-fn default_near() -> f64 {
-    -1.0
-}
-
 impl Camera {
     /// A camera with bounds.
     pub fn new(eye: [f64; 3], look_at: [f64; 3], up: [f64; 3], bounds: [f64; 4], near: f64) -> Self {
-        Self { eye, look_at, up, bounds: Some(bounds), fov: None, near, far: None }
+        Self { eye, look_at, up, bounds: Some(bounds), fov: None, near: Some(near), far: None }
+    }
+
+    /// Where the image plane stands along W.
+    pub fn image_plane(&self) -> f64 {
+        let way = Vec3::from(self.eye) - Vec3::from(self.look_at);
+        self.near.unwrap_or_else(|| -NEAR_SHARE * way.length())
     }
 
     /// Left, right, bottom and top edge on the image plane of a picture of this size: the outermost pixels look through them.
@@ -48,7 +56,7 @@ impl Camera {
             (Some(bounds), _) => bounds,
             (None, fov) => {
                 let (sin, cos) = sin_cos_degrees(fov.unwrap_or(0.0) / 2.0);
-                let top = self.near.abs() * sin / cos;
+                let top = self.image_plane().abs() * sin / cos;
                 // Between n pixels there are n − 1 steps.
                 let (across, up) = (f64::from(width) - 1.0, f64::from(height) - 1.0);
                 let right = top * if up > 0.0 { across / up } else { f64::from(width) };

@@ -79,6 +79,13 @@ pub enum Integrator {
     Whitted,
 }
 
+impl Integrator {
+    /// Do camera rays start at the eye? In the models of the lecture and the course they start on the image plane.
+    pub fn starts_at_eye(self) -> bool {
+        self == Self::Whitted
+    }
+}
+
 /// What stands between a surface and a light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]

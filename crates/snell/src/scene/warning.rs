@@ -52,6 +52,8 @@ codes! {
     StrayExit = "W007" "stray-exit",
     /// Solids of the same priority and different media that cross each other.
     Overlap = "W008" "overlap",
+    /// Something between the eye and the image plane, in a model of light whose rays start on the plane.
+    BeforeImagePlane = "W009" "before-image-plane",
     /// A light that stands on a surface, as far as hits can tell.
     LightOnSurface = "W010" "light-on-surface",
     /// A line that starts with an unknown word.

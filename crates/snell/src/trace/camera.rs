@@ -16,8 +16,8 @@ pub(crate) struct CameraRays<'a> {
     camera: &'a CameraFrame,
     /// For each pixel its place on the image plane: across and up.
     places: Columns<2>,
-    /// For each pixel the solids in which its ray starts.
-    media: Columns<1>,
+    /// The set of the solids in which they start.
+    medium: f64,
     /// No hit nearer than this counts.
     t_min: f64,
     /// The seed by which samples are spread; `None` where each is its pixel's point of the grid.
@@ -40,26 +40,15 @@ struct Cone {
 impl<'a> CameraRays<'a> {
     pub fn new(world: &'a World) -> Self {
         let t_min = if world.render.integrator == Integrator::Whitted { 0.0 } else { T_MIN };
-        let (places, media) = (Columns::default(), Columns::default());
         let spread = (world.render.spp > 1).then_some(world.render.seed);
-        Self { camera: &world.camera, places, media, t_min, spread, cone: Cone::default() }
+        let (places, cone) = (Columns::default(), Cone::default());
+        Self { camera: &world.camera, places, medium: f64::from(OUTSIDE), t_min, spread, cone }
     }
 
     /// Takes a sample of each pixel of a tile.
-    pub fn aim(&mut self, tile: &Crop, sample: u32, media: &mut Media<'_>) {
+    pub fn aim(&mut self, tile: &Crop, sample: u32, media: &Media<'_>) {
+        self.medium = f64::from(media.eye());
         self.place(tile, sample);
-        self.media.clear();
-        self.media.resize(self.places.len());
-        let [sets] = self.media.columns_mut();
-        if media.camera_is_outside() {
-            sets.fill(f64::from(OUTSIDE));
-            return;
-        }
-        for (row, set) in sets.iter_mut().enumerate() {
-            let [across, up] = self.places.group::<f64, 2>(0, row);
-            let (origin, dir) = self.camera.rays(across, up);
-            *set = f64::from(media.at_start(origin, dir));
-        }
     }
 
     fn place(&mut self, tile: &Crop, sample: u32) {
@@ -96,9 +85,11 @@ impl Cone {
         let corners = [(left, top), (right, top), (left, bottom), (right, bottom)];
         let cos =
             corners.map(|(across, up)| camera.rays::<f64>(across, up).1.dot(axis)).into_iter().fold(1.0, f64::min);
-        // A point of the image plane is the sum of four vectors, each of a few roundings.
+        // A point of the image plane is the sum of four vectors, each of a few roundings. Rays that start at the eye do not
+        // pass it.
         let size = left.abs().max(right.abs()) + top.abs().max(bottom.abs());
-        let off = 16.0 * f64::EPSILON * (camera.eye.length() + middle.length() + size);
+        let lost = if camera.starts_at_eye() { 0.0 } else { camera.eye.length() + middle.length() + size };
+        let off = 16.0 * f64::EPSILON * lost;
         Self { axis, cos, off, near: camera.near().abs() }
     }
 
@@ -144,7 +135,7 @@ impl Generation for CameraRays<'_> {
             source: L::splat(-1.0),
             parent: L::splat(0.0),
             pixel: L::ramp(start),
-            medium: self.media.lanes(0, start),
+            medium: L::splat(self.medium),
             band: L::splat(f64::from(WHITE)),
             back: L::splat(0.0),
         }
@@ -169,8 +160,8 @@ mod tests {
     /// The rays of a tile, of a camera without a world.
     fn through<'a>(camera: &'a CameraFrame, tile: &Crop) -> CameraRays<'a> {
         let spread = (camera.spread() > 0.0).then_some(5);
-        let (places, media, cone) = (Columns::default(), Columns::default(), Cone::default());
-        let mut rays = CameraRays { camera, places, media, t_min: 0.0, spread, cone };
+        let (places, cone) = (Columns::default(), Cone::default());
+        let mut rays = CameraRays { camera, places, medium: 0.0, t_min: 0.0, spread, cone };
         rays.place(tile, 3);
         rays
     }
@@ -186,11 +177,12 @@ mod tests {
             corner in prop::array::uniform2(0..60u32),
             near in -3.0..-0.1f64,
             spp in 1..3u32,
+            integrator in prop::sample::select(vec![Integrator::Lecture, Integrator::Whitted]),
         ) {
             let moved = |p: [f64; 3]| p.map(|c| c + far);
             let bounds = [-1.0, 2.0, -2.0, 1.0];
             let camera = Camera::new(moved(eye), [far; 3], [0.1, 1.0, 0.2], bounds, near);
-            let frame = CameraFrame::new(&camera, &Render { spp, ..Render::new(Integrator::Lecture, [64, 64]) });
+            let frame = CameraFrame::new(&camera, &Render { spp, ..Render::new(integrator, [64, 64]) });
             prop_assume!(frame.has_image_plane());
             let rays = through(&frame, &Crop { x: corner[0], y: corner[1], width: 4, height: 3 });
             let sphere = Sphere { center: moved(center).into(), radius };

@@ -123,7 +123,7 @@ impl<'a, L: Lanes, O: Observer> Tracer<'a, L, O> {
         self.lost_sizes.resize(count, 0.0);
         for sample in 0..spp {
             self.media.forget();
-            camera_rays.aim(tile, sample, &mut self.media);
+            camera_rays.aim(tile, sample, &self.media);
             self.trace_sample(&camera_rays)?;
             if spp > 1 {
                 self.sum.resize(count, Rgb::black());

@@ -38,8 +38,8 @@ pub(crate) struct Media<'a> {
     handles: BTreeMap<Vec<u32>, u32>,
     /// What has been worked out: from a set across a solid's surface.
     across: BTreeMap<(u32, u32), u32>,
-    /// The set that holds the eye; `None` where no solid is near it or its image plane.
-    eye: Option<u32>,
+    /// The set that holds the eye.
+    eye: u32,
     crossings: Vec<(f64, u32)>,
 }
 
@@ -50,14 +50,13 @@ impl<'a> Media<'a> {
             sets: Vec::new(),
             handles: BTreeMap::new(),
             across: BTreeMap::new(),
-            eye: None,
+            eye: OUTSIDE,
             crossings: Vec::new(),
         };
         media.intern(Vec::new());
-        let camera = &world.camera;
-        let near = Bounds::of(camera.outermost().into_iter().chain([camera.eye]));
-        if world.solids.iter().any(|solid| solid.between_faces_of.is_some() || solid.bounds.meets(&near)) {
-            media.eye = Some(media.around(camera.eye));
+        let eye = world.camera.eye;
+        if world.solids.iter().any(|solid| solid.between_faces_of.is_some() || solid.bounds.meets(&Bounds::of([eye]))) {
+            media.eye = media.around(eye);
         }
         media
     }
@@ -88,30 +87,15 @@ impl<'a> Media<'a> {
 
     /// Forgets all sets but that of the eye and the empty one: handles are good for a tile.
     pub fn forget(&mut self) {
-        let kept = self.eye.unwrap_or(OUTSIDE) as usize + 1;
+        let kept = self.eye as usize + 1;
         self.sets.truncate(kept);
         self.handles.retain(|_, handle| (*handle as usize) < kept);
         self.across.clear();
     }
 
-    /// Is no solid near the camera, so that all its rays start outside?
-    pub fn camera_is_outside(&self) -> bool {
-        self.eye.is_none()
-    }
-
-    /// The solids in which a camera ray starts: carried along from the eye to the image plane.
-    pub fn at_start(&mut self, origin: Vec3, dir: Vec3) -> u32 {
-        let (eye, mut set) = (self.world.camera.eye, self.eye.unwrap_or(OUTSIDE));
-        let mut crossings = std::mem::take(&mut self.crossings);
-        crossings.clear();
-        // What is met again from the image plane does not count twice: see `cross`.
-        let end = (origin - eye).length() + self.world.clearance;
-        self.world.tree.crossings(eye, dir, [0.0, end], &mut crossings);
-        for &(t, primitive) in &crossings {
-            set = self.cross(set, primitive, eye, dir, t);
-        }
-        self.crossings = crossings;
-        set
+    /// The set that holds the eye, where camera rays start.
+    pub fn eye(&self) -> u32 {
+        self.eye
     }
 
     /// Across a primitive, if it is a face through which a ray in this set can go: one that leads out of a solid of the set, or

@@ -1,6 +1,6 @@
 //! The placed camera: which ray belongs to which pixel.
 
-use crate::geometry::Vec3;
+use crate::geometry::{Bounds, Vec3};
 use crate::lanes::Lanes;
 use crate::scene::{Camera, Render};
 
@@ -16,6 +16,8 @@ pub struct CameraFrame {
     /// Width and height of the picture in pixels.
     pub size: [u32; 2],
     near: f64,
+    /// Do rays start at the eye, and not on the image plane?
+    from_eye: bool,
     /// How far from its point of the grid a sample of a pixel may be, in pixels.
     spread: f64,
 }
@@ -24,8 +26,9 @@ impl CameraFrame {
     /// Places a camera that has been validated.
     pub fn new(camera: &Camera, render: &Render) -> Self {
         let (axes, bounds) = (camera.axes().unwrap_or_default(), camera.window(render.size));
+        let from_eye = render.integrator.starts_at_eye();
         let spread = if render.spp > 1 { 0.5 } else { 0.0 };
-        Self { eye: camera.eye.into(), axes, bounds, size: render.size, near: camera.near, spread }
+        Self { eye: camera.eye.into(), axes, bounds, size: render.size, near: camera.image_plane(), from_eye, spread }
     }
 
     /// Origin and direction of the ray through a pixel, (0, 0) on top left.
@@ -58,15 +61,29 @@ impl CameraFrame {
     /// Origins and directions of the rays through some points of the image plane.
     #[inline(always)]
     pub(crate) fn rays<L: Lanes>(&self, across: L, up: L) -> (Vec3<L>, Vec3<L>) {
+        if self.from_eye {
+            // Without the eye's place, which would cost digits far from the origin.
+            return (self.eye.splat(), self.way(across, up).unit());
+        }
         let origin = self.point(across, up);
         (origin, (origin - self.eye.splat()).unit())
     }
 
-    /// Is the image plane where `near` puts it, to three digits, in spite of rounding? Very near to the eye, or with the
-    /// eye very far from the origin, it is not, and rays have wrong directions or none.
+    /// Do rays start at the eye?
+    pub(crate) fn starts_at_eye(&self) -> bool {
+        self.from_eye
+    }
+
+    /// All places where camera rays start.
+    pub(crate) fn starts(&self) -> Bounds {
+        if self.from_eye { Bounds::of([self.eye]) } else { Bounds::of(self.outermost()) }
+    }
+
+    /// Is the image plane where `near` puts it, to three digits, in spite of rounding? Very near to the eye, or with the eye very
+    /// far from the origin if rays start on the plane, it is not, and rays have wrong directions or none.
     pub(crate) fn has_image_plane(&self) -> bool {
-        let distance = (self.point(0.0, 0.0) - self.eye).length();
-        (distance / self.near + 1.0).abs() < 1e-3
+        let way = if self.from_eye { self.way(0.0, 0.0) } else { self.point(0.0, 0.0) - self.eye };
+        (way.length() / self.near + 1.0).abs() < 1e-3
     }
 
     /// The four corners of the picture on the image plane.
@@ -89,6 +106,13 @@ impl CameraFrame {
         [self.point(left, bottom), self.point(right, bottom), self.point(left, top), self.point(right, top)]
     }
 
+    /// From the eye to a point of the image plane.
+    #[inline(always)]
+    fn way<L: Lanes>(&self, px: L, py: L) -> Vec3<L> {
+        let [u, v, w] = self.axes;
+        (w * self.near).splat() + u.splat() * px + v.splat() * py
+    }
+
     #[inline(always)]
     fn point<L: Lanes>(&self, px: L, py: L) -> Vec3<L> {
         let [u, v, w] = self.axes;
@@ -106,9 +130,12 @@ mod tests {
     use super::*;
     use crate::scene::Integrator;
 
+    fn camera(eye: [f64; 3], look_at: [f64; 3]) -> Camera {
+        Camera::new(eye, look_at, [0.0, 1.0, 0.0], [-2.0, 4.0, -1.0, 3.0], -5.0)
+    }
+
     fn frame(size: [u32; 2]) -> CameraFrame {
-        let camera = Camera::new([0.0, 0.0, 10.0], [0.0; 3], [0.0, 1.0, 0.0], [-2.0, 4.0, -1.0, 3.0], -5.0);
-        CameraFrame::new(&camera, &Render::new(Integrator::Lecture, size))
+        CameraFrame::new(&camera([0.0, 0.0, 10.0], [0.0; 3]), &Render::new(Integrator::Lecture, size))
     }
 
     #[test]
@@ -118,6 +145,26 @@ mod tests {
         assert_eq!(camera.ray(0, 0).0, Vec3::new(-2.0, 3.0, 5.0), "top left");
         assert_eq!(camera.ray(2, 4).0, Vec3::new(4.0, -1.0, 5.0), "bottom right");
         assert_eq!(camera.ray(1, 2).0, Vec3::new(1.0, 1.0, 5.0), "the middle");
+    }
+
+    /// The lecture's point of the image plane is `eye + …`, and loses digits with the eye; an eye's own rays need no such sum.
+    #[test]
+    fn rays_from_the_eye_have_the_same_directions_however_far_away() {
+        let rays = |far: f64, near: Option<f64>| {
+            let at = |[x, y, z]: [f64; 3]| [x + far, y - far, z + far];
+            let camera = Camera { fov: Some(40.0), bounds: None, near, ..camera(at([0.0, 2.0, 10.0]), at([1.0; 3])) };
+            let frame = CameraFrame::new(&camera, &Render::new(Integrator::Whitted, [5, 4]));
+            (0..20).map(|i| frame.ray(i % 5, i / 5)).collect::<Vec<_>>()
+        };
+        for far in [0.0, 1e6, 1e12] {
+            let found = rays(far, None);
+            assert!(found.iter().all(|(origin, _)| *origin == Vec3::new(far, 2.0 - far, 10.0 + far)));
+            assert!(found.iter().zip(rays(0.0, None)).all(|((_, found), (_, expected))| *found == expected), "{far}");
+        }
+        // Where the plane stands changes nothing but a few roundings of numbers below 1.
+        for (found, expected) in rays(0.0, Some(-1e3)).into_iter().zip(rays(0.0, None)) {
+            assert!(found.0 == expected.0 && (found.1 - expected.1).length() < 1e-15);
+        }
     }
 
     #[test]

@@ -4,6 +4,7 @@ mod camera;
 mod lamp;
 mod light;
 mod mesh;
+mod skipped;
 mod solid;
 mod sphere;
 mod surface;
@@ -131,7 +132,8 @@ impl World {
         if !world.camera.has_image_plane() {
             let message = "the image plane is so near to the eye that it is lost in rounding".to_owned();
             let place = vec![Step::from("camera"), Step::from("near")];
-            return Err(vec![Problem { place, message, help: Some("move it away, like near = -5".to_owned()) }]);
+            let help = "move it away from the eye: let `near` be more negative, and `bounds` larger by the same factor";
+            return Err(vec![Problem { place, message, help: Some(help.to_owned()) }]);
         }
         if world.materials.is_empty() {
             // Where nothing is, nobody asks what it is made of; but rows of the background are rows like others.
@@ -161,6 +163,7 @@ impl World {
         }
         world.build_tree(&parts, quality, threads).map_err(|problem| vec![problem])?;
         world.find_lights_on_surfaces(scene, &parts);
+        world.warnings.extend(world.before_image_plane());
         Ok(world)
     }
 

@@ -3,7 +3,7 @@
 use super::{NO_SOLID, World};
 use crate::film::Rgb;
 use crate::geometry::ray::{Heading, axes, main_axis};
-use crate::geometry::{Affine, Sphere, Vec3, sphere, triangle};
+use crate::geometry::{Affine, Bounds, Sphere, Vec3, sphere, triangle};
 use crate::lanes::{Lanes, MAX_WIDTH, Mask};
 use crate::scene::Shadows;
 
@@ -59,6 +59,8 @@ pub(super) struct Placement {
     pub first_solid: u32,
     pub to_world: Affine,
     pub to_model: Affine,
+    /// Its box, with some room.
+    pub bounds: Bounds,
 }
 
 impl Surfaces {

@@ -19,9 +19,9 @@ impl World {
             let message = "more than 2 billion spheres and triangles".to_owned();
             return Err(Problem { place: vec![Step::from("mesh")], message, help: None });
         }
-        // Rays start on surfaces or on the image plane; no ray origin is farther from a primitive than this.
-        let corners = Bounds::of(self.camera.outermost());
-        let mut everything = (0..shapes.count()).map(|i| shapes.bounds(i)).fold(corners, Bounds::union);
+        // Rays start at the camera or on surfaces; no ray origin is farther from a primitive than this.
+        let starts = self.camera.starts();
+        let mut everything = (0..shapes.count()).map(|i| shapes.bounds(i)).fold(starts, Bounds::union);
         let mut boxes = Vec::with_capacity(parts.placed.len());
         for (which, name, model, map) in &parts.placed {
             let Triangles { vertices, faces } = &parts.models[*model];
@@ -38,7 +38,7 @@ impl World {
         self.clearance = MARGIN * (reach + farthest);
         // In the space of a model rays come from everywhere that any of its instances sees, and start a little behind.
         let mut seen: Vec<Bounds> = parts.models.iter().map(|m| Bounds::of(m.vertices.iter().copied())).collect();
-        let mut shrunk = vec![0.0; parts.models.len()];
+        let mut norms = vec![0.0; parts.models.len()];
         let mut instances = Vec::with_capacity(parts.placed.len());
         let mut first = self.surfaces.material_of.len();
         for ((which, name, model, map), bounds) in parts.placed.iter().zip(boxes) {
@@ -46,7 +46,7 @@ impl World {
             let flat = || problem(*which, format!("an instance of `{name}` is scaled by 0"));
             let instance = instance.ok_or_else(flat)?;
             self.clearance = self.clearance.max(instance.margin);
-            shrunk[*model] = instance.to_model.norm().max(shrunk[*model]);
+            norms[*model] = instance.to_model.norm().max(norms[*model]);
             seen[*model] = seen[*model].union(Bounds::of(everything.corners().map(|c| instance.to_model.apply(c))));
             let count = self.models[*model].material_of.len();
             self.objects.push(Object { name: name.clone(), first: first as u32, count: count as u32 });
@@ -56,6 +56,7 @@ impl World {
                 first_solid: self.solids.len() as u32,
                 to_world: *map,
                 to_model: instance.to_model,
+                bounds: instance.bounds,
             };
             self.solids.extend(parts.solids[*model].iter().map(|solid| solid.placed(map)));
             if count > 0 {
@@ -69,7 +70,7 @@ impl World {
         }
         self.behind = 0.5 * self.clearance;
         let models =
-            parts.models.iter().zip(seen.iter().zip(shrunk)).map(|(Triangles { vertices, faces }, (seen, norm))| {
+            parts.models.iter().zip(seen.iter().zip(norms)).map(|(Triangles { vertices, faces }, (seen, norm))| {
                 let shapes = Shapes { vertices, faces, ..Shapes::default() };
                 let margin = (MARGIN * (seen.diagonal() + seen.farthest())).max(norm * self.clearance);
                 Bvh::build(&shapes, vec![], margin, quality, threads)

@@ -14,8 +14,11 @@ pub(super) fn camera(scene: &Scene, found: &mut Findings) {
     if let Some(far) = camera.far {
         found.number(at("far"), far);
     }
-    if found.number(at("near"), camera.near) && camera.near >= 0.0 {
-        let message = format!("near must be negative, read {}", camera.near);
+    if let Some(near) = camera.near
+        && found.number(at("near"), near)
+        && near >= 0.0
+    {
+        let message = format!("near must be negative, read {near}");
         found.problem(at("near"), message, "the image plane stands in front of the eye, on the negative side, like -5");
     }
     window(scene, found);
@@ -46,6 +49,11 @@ fn window(scene: &Scene, found: &mut Findings) {
         if found.numbers(&at("bounds"), &bounds) && (left == right || bottom == top) {
             let message = format!("the bounds have no area: left {left}, right {right}, bottom {bottom}, top {top}");
             found.problem(at("bounds"), message, "the order is left, right, bottom, top, like [-2, 2, -2, 2]");
+        }
+        if camera.near.is_none() && camera.fov.is_none() {
+            let help =
+                "add `near = -distance`, how far before the eye it stands, or give `fov = degrees` instead of `bounds`";
+            found.problem(at("near"), "`bounds` are measured on the image plane, and nothing says where that is", help);
         }
     }
     if let Some(fov) = camera.fov
