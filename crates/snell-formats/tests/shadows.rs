@@ -221,7 +221,7 @@ fn lamp(scale: f64, away: f64, shape: &str) -> Scene {
     scene.camera = snell::scene::Camera {
         eye: camera.eye.map(|c| c * scale),
         bounds: camera.bounds.map(|bounds| bounds.map(|b| b * scale)),
-        near: camera.near * scale,
+        near: camera.near.map(|near| near * scale),
         ..camera
     };
     // Where the surface is: a third along, which is no number that rounds well.

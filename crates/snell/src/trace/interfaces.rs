@@ -10,7 +10,7 @@
 //! within a solid at an edge may have been rounded to its outside, from where no face leads out: it leaves by the nearest one.
 
 use super::hits::{Face, Hits, SKY};
-use super::leaving::Leaving;
+use super::leaving::{Leaving, until_clear};
 use super::media::{Media, OUTSIDE};
 use super::queue::{Generation, Load, RayKind};
 use super::statistics::{Overlap, Statistics};
@@ -60,6 +60,9 @@ impl Default for Ways {
 
 /// More media than this do not end at one edge.
 const AT_ONE_EDGE: u8 = 8;
+
+/// A face met at a cosine of 1/2048 or less may be met farther from where it is than other faces of its place are looked for.
+const SLANTED: f64 = 2048.0;
 
 /// What a ray has met.
 enum Met {
@@ -286,10 +289,13 @@ impl Ways {
         let Place { after, up_to, face, enters } = place;
         let is_clear = t > self.clear[ray].max(self.since[ray] + world.clearance);
         if after == before && !enters && is_clear && !media.contains(before, solid) {
-            // Along the rim of a solid a ray meets a way out and a way in, in one place and in any order.
-            match self.rim(world, packet, ray, solid) {
-                Some(up_to) => return Met::Nothing(up_to),
-                None => statistics.stray.add(pixel),
+            // Along the rim of a solid a ray meets a way out and a way in, in one place and in any order; and a face that it sees
+            // edge on may look either way.
+            if !world.is_edge_on(primitive as usize, dir) {
+                match self.rim(world, packet, ray, solid) {
+                    Some(up_to) => return Met::Nothing(up_to),
+                    None => statistics.stray.add(pixel),
+                }
             }
         }
         if media.top(before) == media.top(after) {
@@ -325,8 +331,14 @@ impl Ways {
         let (world, leaving) = (media.world(), self.leaving(media.world(), packet, ray));
         let Leaving { origin, dir, source, .. } = leaving;
         let (t, before) = (place.up_to, index(self.before[ray]) as u32);
+        let off = |t: f64, primitive: u32| {
+            let cos = world.geometric_normal(primitive as usize, origin + dir * t).dot(dir);
+            until_clear(world, cos).min(SLANTED * world.clearance)
+        };
+        let (own, most) = (off(t, place.face.1), SLANTED * world.clearance);
         self.crossings.clear();
-        world.tree.crossings(origin, dir, [t - world.clearance, t + world.clearance], &mut self.crossings);
+        world.tree.crossings(origin, dir, [t - own - most, t + own + most], &mut self.crossings);
+        self.crossings.retain(|&(other, primitive)| (other - t).abs() <= own + off(other, primitive));
         if !self.crossings.contains(&place.face) {
             // It is met where the ray starts, and does not lie in its way.
             self.crossings.push(place.face);
@@ -375,8 +387,9 @@ impl Ways {
     /// The farthest face of a solid in the place of the hit, if there are ways in among them.
     fn rim(&mut self, world: &World, packet: &Packet, ray: usize, solid: u32) -> Option<f64> {
         let ((origin, dir), t) = (packet.ways::<f64>(ray), packet.t[ray]);
+        let off = until_clear(world, world.geometric_normal(index(packet.primitive[ray]), origin + dir * t).dot(dir));
         self.crossings.clear();
-        world.tree.crossings(origin, dir, [t - world.clearance, t + world.clearance], &mut self.crossings);
+        world.tree.crossings(origin, dir, [t - off, t + off], &mut self.crossings);
         self.crossings.retain(|&(_, primitive)| world.solid_of(primitive as usize) == solid);
         let way_in = |&(t, primitive): &(f64, u32)| world.enters(primitive as usize, solid, origin, dir, t);
         self.crossings.iter().any(way_in).then(|| self.crossings.iter().fold(t, |up_to, &(t, _)| up_to.max(t)))

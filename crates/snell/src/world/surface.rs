@@ -156,6 +156,15 @@ impl World {
         hit.meets.then_some(hit.t)
     }
 
+    /// Does a line along `dir` stay in the plane of a triangle, as far as hits are exact, all the way past it?
+    pub(crate) fn is_edge_on(&self, primitive: usize, dir: Vec3) -> bool {
+        if primitive < self.spheres.len() {
+            return false;
+        }
+        let corners = self.corners(primitive);
+        triangle::normal(corners).dot(dir).abs() * Bounds::of(corners).diagonal() <= self.clearance
+    }
+
     /// A ray and the corners of a triangle in the space in which the one meets the other: that of the model, for an instance.
     pub(super) fn in_model(&self, primitive: usize, origin: Vec3, dir: Vec3) -> (Vec3, Vec3, [Vec3; 3]) {
         match self.placement(primitive) {

@@ -156,7 +156,7 @@ impl Bvh {
 mod tests {
     use super::*;
     use crate::geometry::Sphere;
-    use crate::geometry::bvh::{Quality, Shapes};
+    use crate::geometry::bvh::{MARGIN, Quality, Shapes};
 
     /// A tree as deep as it gets, met by a ray in all of its boxes. Crowds of spheres stand around the origin, each a quarter
     /// nearer than the one before, on the axes in turn: cut in the middle, each node splits off one crowd, down to where nodes
@@ -173,7 +173,7 @@ mod tests {
         }
         spheres.extend(vec![Sphere { center: Vec3::default(), radius: 1e-12 }; 50_000]);
         let shapes = Shapes { spheres: &spheres, ..Shapes::default() };
-        let tree = Bvh::build(&shapes, vec![], 10.0, Quality::Fast, 1);
+        let tree = Bvh::build(&shapes, vec![], 10.0 * MARGIN, Quality::Fast, 1);
         assert!(tree.depth > 65, "only {} levels", tree.depth);
         let dir = Vec3::new(1.0, 1.0, 1.0).unit();
         let mut found = Vec::new();
