@@ -137,7 +137,7 @@ impl Generation for CameraRays<'_> {
             pixel: L::ramp(start),
             medium: L::splat(self.medium),
             band: L::splat(f64::from(WHITE)),
-            back: L::splat(0.0),
+            back: Vec3::default().splat(),
         }
     }
 

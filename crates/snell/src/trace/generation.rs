@@ -22,7 +22,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 const GENERATION_BUDGET: usize = 1 << 16;
 
 /// A pixel with more rays than this gets no more; the rest counts as lost light. It bounds the time that a pixel takes, and
-/// what its generation takes of memory: a ray has 19 numbers of 8 bytes, and more children may be made before they are
+/// what its generation takes of memory: a ray has 21 numbers of 8 bytes, and more children may be made before they are
 /// counted, twice as many, or one for each band of light.
 const RAYS_PER_PIXEL: u32 = 1 << 18;
 

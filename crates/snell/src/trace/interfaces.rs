@@ -12,9 +12,10 @@
 use super::hits::{Face, Hits, SKY};
 use super::leaving::{Leaving, until_clear};
 use super::media::{Media, OUTSIDE};
-use super::queue::{Generation, Load, RayKind};
+use super::queue::{Generation, Load};
 use super::statistics::{Overlap, Statistics};
 use crate::film::Rgb;
+use crate::geometry::Vec3;
 use crate::geometry::bvh::{PACKET, Packet};
 use crate::lanes::{Kernel, Lanes, Mask, index};
 use crate::optics::absorption::transmittance_rgb;
@@ -29,9 +30,9 @@ pub(crate) struct Ways {
     /// 1 where it meets the face from outside.
     outer: [f64; PACKET],
     band: [f64; PACKET],
-    /// Where it is clear of the plane of the face that it leaves, and which rays were mirrored there.
+    /// Where it is clear of the plane of the face that it leaves, and how far in front of that face the packet has its start.
     clear: [f64; PACKET],
-    mirrored: u64,
+    back: [[f64; PACKET]; 3],
     /// How often it has left something where it starts, without a face in its way.
     left: [u8; PACKET],
     /// From where on the medium has been the same, and what the media before have let through.
@@ -49,7 +50,7 @@ impl Default for Ways {
             outer: zero,
             band: zero,
             clear: zero,
-            mirrored: 0,
+            back: [zero; 3],
             left: [0; PACKET],
             since: zero,
             kept: [[1.0; PACKET]; 3],
@@ -104,15 +105,9 @@ impl<G: Generation> Kernel for FindInterfaces<'_, '_, G> {
         packet.two_sided = true;
         for first in (0..rays.len()).step_by(PACKET) {
             let all = rays.fill::<L>(packet, first, world.tree.has_triangles());
+            let mut moved = 0;
             for start in (0..PACKET).step_by(L::WIDTH).filter(|&start| all >> start != 0) {
-                let load = rays.loads::<L>(first + start);
-                load.medium.store(&mut ways.before[start..]);
-                load.band.store(&mut ways.band[start..]);
-            }
-            ways.mirrored = 0;
-            for ray in ones(all) {
-                ways.mirrored |= u64::from(rays.kind(first + ray) == RayKind::Mirror) << ray;
-                ways.start(world, packet, ray, &rays.loads(first + ray));
+                moved |= ways.start(world, packet, start, &rays.loads::<L>(first + start)) << start;
             }
             let (mut open, mut met) = (all, 0);
             while open != 0 {
@@ -137,7 +132,7 @@ impl<G: Generation> Kernel for FindInterfaces<'_, '_, G> {
                 }
                 (packet.t[ray], packet.primitive[ray]) = (f64::INFINITY, SKY);
             }
-            for ray in ones(met & ways.mirrored) {
+            for ray in ones(met & moved) {
                 // From the place itself; but in a corner, where that may be behind what is met, all is as it was asked for.
                 let (origin, dir) = rays.ways::<f64>(first + ray);
                 let t = world.meets_at(index(packet.primitive[ray]), origin, dir, packet.t[ray]);
@@ -176,6 +171,17 @@ fn ones(mut bits: u64) -> impl Iterator<Item = usize> {
     })
 }
 
+/// Could two faces that a ray meets be in one place? Each is met as far from where it is as a hit may be off its plane, over the cosine
+/// at which it is met.
+pub(super) fn are_in_one_place(world: &World, (origin, dir): (Vec3, Vec3), a: (f64, u32), b: (f64, u32)) -> bool {
+    let off = |(t, primitive): (f64, u32)| {
+        let cos = world.geometric_normal(primitive as usize, origin + dir * t).dot(dir);
+        until_clear(world, cos).min(SLANTED * world.clearance)
+    };
+    let gap = (b.0 - a.0).abs();
+    gap <= world.clearance || (gap <= 2.0 * SLANTED * world.clearance && gap <= off(a) + off(b))
+}
+
 /// Does a ray that goes on behind a thin face only meet the same pane again? Between two faces of one plane is nothing but rounding;
 /// at an edge the ray starts beside its face, and may meet the next one, though it has been through.
 fn leaves_pane(world: &World, packet: &Packet, ray: usize) -> bool {
@@ -207,29 +213,45 @@ impl Ways {
         }
     }
 
-    fn start(&mut self, world: &World, packet: &mut Packet, ray: usize, load: &Load<f64>) {
-        (self.after[ray], self.outer[ray], self.since[ray]) = (self.before[ray], 1.0, 0.0);
-        for channel in &mut self.kept {
-            channel[ray] = 1.0;
+    /// Says which rays of a group have been moved in front of the place that they leave.
+    #[inline(always)]
+    fn start<L: Lanes>(&mut self, world: &World, packet: &mut Packet, start: usize, load: &Load<L>) -> u64 {
+        let (zero, one) = (L::splat(0.0), L::splat(1.0));
+        let Load { t_min, source, medium, band, back, .. } = *load;
+        let back_columns: [L; 3] = back.into();
+        for (value, column) in [
+            (medium, &mut self.before),
+            (medium, &mut self.after),
+            (one, &mut self.outer),
+            (band, &mut self.band),
+            (t_min, &mut self.clear),
+            (zero, &mut self.since),
+        ] {
+            value.store(&mut column[start..]);
         }
-        (self.clear[ray], self.left[ray]) = (packet.t_min[ray], 0);
+        for axis in 0..3 {
+            one.store(&mut self.kept[axis][start..]);
+            back_columns[axis].store(&mut self.back[axis][start..]);
+        }
+        self.left[start..start + L::WIDTH].fill(0);
         // At an edge a ray may have crossed a face by rounding a little before it starts.
-        let anywhere = packet.source[ray] < 0.0 && index(self.before[ray]) as u32 == OUTSIDE;
-        packet.t_min[ray] = if anywhere { 0.0 } else { -world.behind };
-        if self.mirrored >> ray & 1 == 1 {
-            let Leaving { origin, wo, .. } = self.leaving(world, packet, ray);
-            packet.start_at(ray, origin + wo * load.back);
-        }
+        let anywhere = source.lt(zero) & medium.eq(L::splat(f64::from(OUTSIDE)));
+        L::select(anywhere, zero, L::splat(-world.behind)).store(&mut packet.t_min[start..]);
+        packet.move_starts(start, back);
+        u64::from(back.dot(back).gt(zero).bits())
     }
 
-    fn leaving(&self, world: &World, packet: &Packet, ray: usize) -> Leaving {
+    fn leaving(&self, packet: &Packet, ray: usize) -> Leaving {
         let (origin, dir) = packet.ways::<f64>(ray);
-        Leaving::ray(world, origin, dir, packet.source[ray], self.clear[ray], self.mirrored >> ray & 1 == 1)
+        let [x, y, z] = &self.back;
+        let back = Vec3::new(x[ray], y[ray], z[ray]);
+        let wo = if back == Vec3::default() { -dir } else { back };
+        Leaving { origin, dir, source: packet.source[ray], clear: self.clear[ray], wo }
     }
 
     /// Does a ray really meet a face, where it could only be a part of the place that it leaves?
     fn meets(&self, world: &World, packet: &Packet, ray: usize, primitive: u32, t: f64) -> bool {
-        if t > self.clear[ray] { t > 0.0 } else { self.leaving(world, packet, ray).meets(world, primitive, t) }
+        if t > self.clear[ray] { t > 0.0 } else { self.leaving(packet, ray).meets(world, primitive, t) }
     }
 
     /// For a ray that has missed its way out of something: was it rounded to the outside of an edge where it starts? Then it meets
@@ -328,17 +350,13 @@ impl Ways {
         ray: usize,
         place: &mut Place,
     ) -> Option<(f64, u32)> {
-        let (world, leaving) = (media.world(), self.leaving(media.world(), packet, ray));
+        let (world, leaving) = (media.world(), self.leaving(packet, ray));
         let Leaving { origin, dir, source, .. } = leaving;
         let (t, before) = (place.up_to, index(self.before[ray]) as u32);
-        let off = |t: f64, primitive: u32| {
-            let cos = world.geometric_normal(primitive as usize, origin + dir * t).dot(dir);
-            until_clear(world, cos).min(SLANTED * world.clearance)
-        };
-        let (own, most) = (off(t, place.face.1), SLANTED * world.clearance);
+        let far = 2.0 * SLANTED * world.clearance;
         self.crossings.clear();
-        world.tree.crossings(origin, dir, [t - own - most, t + own + most], &mut self.crossings);
-        self.crossings.retain(|&(other, primitive)| (other - t).abs() <= own + off(other, primitive));
+        world.tree.crossings(origin, dir, [t - far, t + far], &mut self.crossings);
+        self.crossings.retain(|&face| are_in_one_place(world, (origin, dir), place.face, face));
         if !self.crossings.contains(&place.face) {
             // It is met where the ray starts, and does not lie in its way.
             self.crossings.push(place.face);
@@ -356,16 +374,16 @@ impl Ways {
             let leads_out = media.contains(before, world.solid_of(primitive as usize));
             !starts && (leads_out || leaving.meets(world, primitive, t))
         });
-        // Along the rim of a solid there is a way in and a way out in one place, which is neither.
-        let enters = |&(t, primitive): &(f64, u32)| {
-            let solid = world.solid_of(primitive as usize);
-            (solid, solid != NO_SOLID && world.enters(primitive as usize, solid, origin, dir, t))
-        };
-        let ways: Vec<_> = self.crossings.iter().map(enters).collect();
-        self.crossings.retain(|face| {
-            let (solid, way) = enters(face);
-            !ways.contains(&(solid, !way))
-        });
+        if self.crossings.len() > 1 {
+            // Along the rim of a solid there is a way in and a way out in one place, which is neither.
+            let enters = |&(t, primitive): &(f64, u32)| {
+                let solid = world.solid_of(primitive as usize);
+                (solid, solid != NO_SOLID && world.enters(primitive as usize, solid, origin, dir, t))
+            };
+            let ways: Vec<_> = self.crossings.iter().map(enters).collect();
+            let mut kept = ways.iter().map(|&(solid, way)| !ways.contains(&(solid, !way)));
+            self.crossings.retain(|_| kept.next().unwrap_or(true));
+        }
         let mut crossed = |&(t, primitive): &(f64, u32)| {
             let next = media.cross(place.after, primitive, origin, dir, t);
             place.up_to = place.up_to.max(t);

@@ -33,7 +33,9 @@ pub(super) fn until_clear<L: Lanes>(world: &World, cos: L) -> L {
 /// corner ways are short.
 #[inline(always)]
 pub(super) fn back<L: Lanes>(world: &World, t: L) -> L {
-    L::splat(4.0 * world.clearance).min(t * L::splat(0.5))
+    // Spheres have no edges.
+    let far = if world.primitive_count() > world.spheres.len() { 4.0 * world.clearance } else { 0.0 };
+    L::splat(far).min(t * L::splat(0.5))
 }
 
 /// A ray that leaves a surface, or the eye.
@@ -51,16 +53,6 @@ pub(super) struct Leaving {
 }
 
 impl Leaving {
-    /// A ray of a generation: `mirrored` or refracted at the surface that it leaves, as the mirror of that would have it.
-    pub fn ray(world: &World, origin: Vec3, dir: Vec3, source: f64, clear: f64, mirrored: bool) -> Self {
-        let mut leaving = Self { origin, dir, source, clear, wo: -dir };
-        if mirrored && source >= 0.0 {
-            let n = leaving.normal(world);
-            leaving.wo = n * (2.0 * n.dot(dir)) - dir;
-        }
-        leaving
-    }
-
     /// Does it really meet a primitive that the tests find at `t`, perhaps behind its origin?
     pub fn meets(&self, world: &World, primitive: u32, t: f64) -> bool {
         if t > self.clear || self.source < 0.0 {

@@ -81,7 +81,7 @@ pub(crate) fn exit_ray<L: Lanes>(blend: Blend, hits: &Batch<'_, L>) -> (L::Mask,
 fn child<L: Lanes>(hits: &Batch<'_, L>, origin: Vec3<L>, dir: Vec3<L>, weight: Weight<L>) -> Rays<L> {
     let (source, parent, pixel) = (hits.primitive(), hits.ray(), hits.pixel());
     let (medium, band) = (L::splat(f64::from(OUTSIDE)), L::splat(f64::from(WHITE)));
-    let (t_min, back) = (L::splat(T_MIN), L::splat(0.0));
+    let (t_min, back) = (L::splat(T_MIN), Vec3::default().splat());
     Rays { origin, dir, load: Load { weight, t_min, source, parent, pixel, medium, band, back } }
 }
 

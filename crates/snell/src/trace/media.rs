@@ -4,6 +4,7 @@
 //! that of the solid with the highest priority, the last entered among equals (Schmidt and Budge, *Simple Nested
 //! Dielectrics in Ray Traced Images*, Journal of Graphics Tools 7(2), 2002); with no solid, the space between the objects.
 
+use super::interfaces::are_in_one_place;
 use super::leaving::Leaving;
 use super::pane::Pane;
 use crate::film::Rgb;
@@ -166,7 +167,7 @@ impl<'a> Media<'a> {
     /// of the thinner medium, so that a rim is not black; between them, what the media absorb. Between parallel faces they do
     /// so over the refracted way, as in a plate or a stack of plates, elsewhere over the straight one.
     pub(super) fn light_along(&mut self, way: &Leaving, distance: f64, mut set: u32) -> Rgb {
-        let (world, clearance) = (self.world, self.world.clearance);
+        let world = self.world;
         let mut crossings = std::mem::take(&mut self.crossings);
         crossings.clear();
         world.tree.crossings(way.origin, way.dir, [-world.behind, distance], &mut crossings);
@@ -174,7 +175,7 @@ impl<'a> Media<'a> {
         // The interface before, and the index in front of the stack of parallel ones that it belongs to.
         let mut last: Option<((usize, Vec3), f64)> = None;
         // What lies in one place is one interface, as for all rays.
-        for place in crossings.chunk_by(|a, b| b.0 - a.0 <= clearance) {
+        for place in crossings.chunk_by(|&a, &b| are_in_one_place(world, (way.origin, way.dir), a, b)) {
             let (t, first) = place[0];
             let (mut next, mut entered, mut pane) = (set, None, false);
             for &(t, primitive) in place {

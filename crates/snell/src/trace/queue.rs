@@ -93,9 +93,9 @@ pub(crate) struct Load<L: Lanes> {
     pub parent: L,
     /// Number of the pixel within the tile.
     pub pixel: L,
-    /// With real optics, how far in front of the surface that a mirrored ray leaves it is asked what it meets:
-    /// [`back`](super::leaving::back).
-    pub back: L,
+    /// With real optics, from the place that a mirrored ray leaves to where it is asked what it meets: [`back`](super::leaving::back)
+    /// towards where its light came from. Zero for others.
+    pub back: Vec3<L>,
     /// In which solids the ray is: a handle of [`Media`](super::media::Media).
     pub medium: L,
     /// Which of the bands of light; [`WHITE`](super::media::WHITE) for all of it.
@@ -108,7 +108,7 @@ pub(crate) struct Load<L: Lanes> {
 #[derive(Debug, Default)]
 pub(crate) struct RayQueue {
     /// Origin, direction, attenuation, factor, `t_min`, source, parent, pixel, medium, band, `back`.
-    rays: Columns<19>,
+    rays: Columns<21>,
     /// How many mirror rays stand in front.
     mirror: usize,
 }
@@ -130,12 +130,12 @@ impl RayQueue {
             return;
         }
         let Rays { origin: o, dir: d, load } = *rays;
-        let Load { weight: Weight { attenuation: a, factor: f }, t_min, source, parent, pixel, medium, band, back } =
+        let Load { weight: Weight { attenuation: a, factor: f }, t_min, source, parent, pixel, medium, band, back: v } =
             load;
         let before = self.len();
         let row = [
             o.x, o.y, o.z, d.x, d.y, d.z, a.r, a.g, a.b, f.r, f.g, f.b, t_min, source, parent, pixel, medium, band,
-            back,
+            v.x, v.y, v.z,
         ];
         self.rays.push(mask, row);
         self.count(kind, self.len() - before);
@@ -187,9 +187,9 @@ impl Generation for RayQueue {
 
     #[inline(always)]
     fn loads<L: Lanes>(&self, start: usize) -> Load<L> {
-        let [r, g, b, fr, fg, fb, t_min, source, parent, pixel, medium, band, back] = self.rays.group(LOAD, start);
+        let [r, g, b, fr, fg, fb, t_min, source, parent, pixel, medium, band, x, y, z] = self.rays.group(LOAD, start);
         let weight = Weight { attenuation: Rgb::new(r, g, b), factor: Rgb::new(fr, fg, fb) };
-        Load { weight, t_min, source, parent, pixel, medium, band, back }
+        Load { weight, t_min, source, parent, pixel, medium, band, back: Vec3::new(x, y, z) }
     }
 
     #[inline(always)]

@@ -158,7 +158,8 @@ pub(crate) fn answer<L: Lanes>(
         (origin, onward) = (Vec3::select(panes, behind, origin), Vec3::select(panes, -hits.wo(), onward));
         goes_on = goes_on | panes;
     }
-    let mirror = child(hits, to.mirror, face.before, band, throughput * (ko * kr + clear * reflectance));
+    let mut mirror = child(hits, to.mirror, face.before, band, throughput * (ko * kr + clear * reflectance));
+    mirror.1.load.back = hits.wo() * back(hits.world, hits.t());
     let refracted_weight = throughput * (clear * dye) * transmittance;
     let (sends, refracted) = child(hits, onward, face.after, band, refracted_weight);
     (contribution, mirror, (sends & goes_on & !splits, Rays { origin, ..refracted }))
@@ -170,7 +171,7 @@ fn child<L: Lanes>(hits: &Batch<'_, L>, dir: Vec3<L>, medium: L, band: L, attenu
     let (source, parent, pixel) = (hits.primitive(), hits.ray(), hits.pixel());
     let weight = Weight { attenuation, factor: Rgb::gray(1.0).splat() };
     let t_min = until_clear(hits.world, hits.geometric_normal().dot(dir));
-    let back = back(hits.world, hits.t());
+    let back = Vec3::default().splat();
     let load = Load { weight, t_min, source, parent, pixel, medium, band, back };
     (hits.active & attenuation.not_black(), Rays { origin: hits.point(), dir, load })
 }

@@ -139,6 +139,16 @@ impl Packet {
         (self.origin[0][ray], self.origin[1][ray], self.origin[2][ray]) = (x, y, z);
     }
 
+    /// Moves the starts of the rays of one group of lanes.
+    #[inline(always)]
+    pub fn move_starts<L: Lanes>(&mut self, start: usize, by: Vec3<L>) {
+        let by: [L; 3] = by.into();
+        for axis in 0..3 {
+            let column = &mut self.origin[axis][start..];
+            (L::load(column) + by[axis]).store(column);
+        }
+    }
+
     /// Origins and directions of the rays of one group of lanes.
     #[inline(always)]
     pub fn ways<L: Lanes>(&self, start: usize) -> (Vec3<L>, Vec3<L>) {
