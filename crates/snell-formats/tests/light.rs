@@ -4,15 +4,15 @@
 
 mod common;
 
-use common::{close, furnace, glass, mesh, picture, traced};
+use common::{cases, close, furnace, glass, mesh, picture, traced};
 use snell::film::Rgb;
 use snell::geometry::{Affine, TriangleMesh, Vec3, make, triangle};
 use snell::render::{Options, render};
 use snell::scene::{Camera, Integrator, Light, Material, Render, Scene, Shadows, Sky, WarningCode};
 use snell::trace::Statistics;
 use snell::world::{CameraFrame, World};
-use snell_formats::Source;
 use snell_formats::scene_file::{self, Syntax};
+use snell_formats::{LoadOptions, Source};
 use snell_test_scenes::brilliant::Cut;
 
 /// Numbers that only look random, the same each time: the fractional parts of multiples of the golden ratio's kin.
@@ -600,6 +600,48 @@ fn planks_have_no_holes() {
                 }
             }
             assert!(inside > 100, "{inside} pixels of a plank of 1 : {aspect}");
+        }
+    }
+}
+
+/// The files in which these faults were found: what is drawn of one convex solid or plane is in one piece, and no ray is lost in it.
+#[test]
+fn the_cases_of_light_are_right() {
+    let Some(folder) = cases() else { return };
+    for name in ["cap-holes", "corner-cube", "cyl1000", "one-plank", "silvered-plate", "wall-seen-straight-on"] {
+        let path = folder.join("light").join(format!("{name}.toml"));
+        let mut scene = snell_formats::load(path.to_str().unwrap(), &LoadOptions::default()).unwrap().scene;
+        assert_eq!(strays(&scene), None, "{name}");
+        // In a white room glass cannot be seen; and what is opaque and stands out is either there or not.
+        let opaque = scene.materials.values().all(|m| m.ko == Rgb::gray(1.0));
+        (scene.ambient, scene.sky) = (Rgb::gray(1.0), None);
+        scene.background = if opaque { Rgb::gray(2.0) } else { Rgb::gray(1.0) };
+        scene.lights.clear();
+        scene.materials.values_mut().filter(|m| opaque || m.ko == Rgb::gray(1.0)).for_each(|m| {
+            *m = Material {
+                ka: Rgb::gray(0.0),
+                kd: Rgb::gray(0.0),
+                ks: Rgb::gray(0.0),
+                kr: m.kr,
+                ..Material::default()
+            };
+        });
+        let world = World::new(&scene).unwrap();
+        let [width, height] = scene.render.size;
+        let mut row = Vec::new();
+        for (x, y) in (0..height).step_by(3).flat_map(|y| (0..width).map(move |x| (x, y))) {
+            let (radiance, tree) = traced(&world, x, y);
+            let seen = (radiance + tree.lost).r;
+            if opaque {
+                row.push(seen == 0.0);
+                if x + 1 == width {
+                    let edges = row.windows(2).filter(|pair| pair[0] != pair[1]).count();
+                    assert!(edges <= 2, "{name}: {edges} edges in row {y}");
+                    row.clear();
+                }
+            } else {
+                assert!((seen - 1.0).abs() < 1e-12, "{name}: {seen} in pixel {x},{y}");
+            }
         }
     }
 }
