@@ -36,6 +36,13 @@ impl Numbers {
     }
 }
 
+/// Turned, of a size, and so far from the origin.
+fn somewhere(numbers: &mut Numbers, size: f64, offset: f64) -> Affine {
+    let turn = Affine::rotation(numbers.direction(), 180.0 * numbers.next()).unwrap();
+    let away = numbers.direction() * offset;
+    turn.then(Affine::scaling(Vec3::new(size, size, size))).then(Affine::translation(away))
+}
+
 /// An outward mesh without curvature: of some vertices on a sphere the faces that have all others behind them.
 fn hull(vertices: Vec<Vec3>) -> TriangleMesh {
     let count = vertices.len() as u32;
@@ -137,10 +144,8 @@ fn convex_solids_do_not_shade_or_mirror_themselves() {
     for (name, shape) in convex() {
         for (exponent, offset) in [(0, 0.0), (20, 0.0), (-20, 0.0), (0, 1e5)] {
             let size = libm::exp2(f64::from(exponent));
-            let turn = Affine::rotation(numbers.direction(), 180.0 * numbers.next()).unwrap();
-            let turn = if offset == 0.0 && exponent == 0 { Affine::IDENTITY } else { turn };
-            let away = numbers.direction() * (offset * size);
-            let map = turn.then(Affine::scaling(Vec3::new(size, size, size))).then(Affine::translation(away));
+            let plain = offset == 0.0 && exponent == 0;
+            let map = if plain { Affine::IDENTITY } else { somewhere(&mut numbers, size, offset * size) };
             let placed = shape.transformed(&map);
             let middle = map.apply(Vec3::<f64>::default());
             for round in 0..3 {
@@ -200,9 +205,7 @@ fn the_corners_of_a_room_do_not_leak() {
     let mut numbers = Numbers(700);
     for (name, shape) in convex() {
         for (size, offset) in [(1.0, 0.0), (libm::exp2(-20.0), 0.0), (3.0, 3e5)] {
-            let turn = Affine::rotation(numbers.direction(), 180.0 * numbers.next()).unwrap();
-            let away = numbers.direction() * offset;
-            let map = turn.then(Affine::scaling(Vec3::new(size, size, size))).then(Affine::translation(away));
+            let map = somewhere(&mut numbers, size, offset);
             let placed = shape.transformed(&map);
             let middle = map.apply(Vec3::<f64>::default());
             let eye = middle + numbers.direction() * (0.1 * size);
@@ -395,9 +398,7 @@ fn glass_is_left_at_its_edges() {
     let mut aimed = 0;
     for (name, shape) in convex() {
         for (size, offset) in [(1.0, 0.0), (libm::exp2(-20.0), 0.0), (3.0, 3e5)] {
-            let turn = Affine::rotation(numbers.direction(), 180.0 * numbers.next()).unwrap();
-            let away = numbers.direction() * offset;
-            let map = turn.then(Affine::scaling(Vec3::new(size, size, size))).then(Affine::translation(away));
+            let map = somewhere(&mut numbers, size, offset);
             let map = if offset == 0.0 && size == 1.0 { Affine::IDENTITY } else { map };
             let placed = shape.transformed(&map);
             let mut scene = stage(placed.clone(), Material::default());

@@ -10,7 +10,7 @@
 //! within a solid at an edge may have been rounded to its outside, from where no face leads out: it leaves by the nearest one.
 
 use super::hits::{Face, Hits, SKY};
-use super::leaving::{Leaving, until_clear};
+use super::leaving::{Leaving, are_in_one_place, together_at_most, until_clear};
 use super::media::{Media, OUTSIDE};
 use super::queue::{Generation, Load};
 use super::statistics::{Overlap, Statistics};
@@ -61,9 +61,6 @@ impl Default for Ways {
 
 /// More media than this do not end at one edge.
 const AT_ONE_EDGE: u8 = 8;
-
-/// A face met at a cosine of 1/2048 or less may be met farther from where it is than other faces of its place are looked for.
-const SLANTED: f64 = 2048.0;
 
 /// What a ray has met.
 enum Met {
@@ -169,17 +166,6 @@ fn ones(mut bits: u64) -> impl Iterator<Item = usize> {
         bits &= bits.wrapping_sub(1);
         place
     })
-}
-
-/// Could two faces that a ray meets be in one place? Each is met as far from where it is as a hit may be off its plane, over the cosine
-/// at which it is met.
-pub(super) fn are_in_one_place(world: &World, (origin, dir): (Vec3, Vec3), a: (f64, u32), b: (f64, u32)) -> bool {
-    let off = |(t, primitive): (f64, u32)| {
-        let cos = world.geometric_normal(primitive as usize, origin + dir * t).dot(dir);
-        until_clear(world, cos).min(SLANTED * world.clearance)
-    };
-    let gap = (b.0 - a.0).abs();
-    gap <= world.clearance || (gap <= 2.0 * SLANTED * world.clearance && gap <= off(a) + off(b))
 }
 
 /// Does a ray that goes on behind a thin face only meet the same pane again? Between two faces of one plane is nothing but rounding;
@@ -353,7 +339,7 @@ impl Ways {
         let (world, leaving) = (media.world(), self.leaving(packet, ray));
         let Leaving { origin, dir, source, .. } = leaving;
         let (t, before) = (place.up_to, index(self.before[ray]) as u32);
-        let far = 2.0 * SLANTED * world.clearance;
+        let far = together_at_most(world);
         self.crossings.clear();
         world.tree.crossings(origin, dir, [t - far, t + far], &mut self.crossings);
         self.crossings.retain(|&face| are_in_one_place(world, (origin, dir), place.face, face));

@@ -38,6 +38,25 @@ pub(super) fn back<L: Lanes>(world: &World, t: L) -> L {
     L::splat(far).min(t * L::splat(0.5))
 }
 
+/// A face met at a cosine of 1/2048 or less may be met farther from where it is than other faces of its place are looked for.
+const SLANTED: f64 = 2048.0;
+
+/// Faces that are farther from each other along a ray are never in one place.
+pub(super) fn together_at_most(world: &World) -> f64 {
+    2.0 * SLANTED * world.clearance
+}
+
+/// Could two faces that a ray meets be in one place? Each is met as far from where it is as a hit may be off its plane, over the cosine
+/// at which it is met.
+pub(super) fn are_in_one_place(world: &World, (origin, dir): (Vec3, Vec3), a: (f64, u32), b: (f64, u32)) -> bool {
+    let off = |(t, primitive): (f64, u32)| {
+        let cos = world.geometric_normal(primitive as usize, origin + dir * t).dot(dir);
+        until_clear(world, cos).min(SLANTED * world.clearance)
+    };
+    let gap = (b.0 - a.0).abs();
+    gap <= world.clearance || (gap <= together_at_most(world) && gap <= off(a) + off(b))
+}
+
 /// A ray that leaves a surface, or the eye.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Leaving {

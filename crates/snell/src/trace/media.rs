@@ -4,8 +4,7 @@
 //! that of the solid with the highest priority, the last entered among equals (Schmidt and Budge, *Simple Nested
 //! Dielectrics in Ray Traced Images*, Journal of Graphics Tools 7(2), 2002); with no solid, the space between the objects.
 
-use super::interfaces::are_in_one_place;
-use super::leaving::Leaving;
+use super::leaving::{Leaving, are_in_one_place};
 use super::pane::Pane;
 use crate::film::Rgb;
 use crate::geometry::{Bounds, Vec3, triangle};
