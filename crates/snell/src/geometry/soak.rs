@@ -16,7 +16,7 @@ use std::time::{Duration, Instant};
 /// What a rounding is, relative.
 const U: f64 = f64::EPSILON / 2.0;
 
-/// Numbers that only look random (SplitMix64; Steele, Lea and Flood, 2014).
+/// Numbers that only look random (`SplitMix64`; Steele, Lea and Flood, 2014).
 struct Dice(u64);
 
 impl Dice {

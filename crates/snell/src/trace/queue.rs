@@ -93,13 +93,13 @@ pub(crate) struct Load<L: Lanes> {
     pub parent: L,
     /// Number of the pixel within the tile.
     pub pixel: L,
-    /// With real optics, from the place that a mirrored ray leaves to where it is asked what it meets: [`back`](super::leaving::back)
-    /// towards where its light came from. Zero for others.
-    pub back: Vec3<L>,
     /// In which solids the ray is: a handle of [`Media`](super::media::Media).
     pub medium: L,
     /// Which of the bands of light; [`WHITE`](super::media::WHITE) for all of it.
     pub band: L,
+    /// With real optics, from the place that a mirrored ray leaves to where it is asked what it meets: [`back`](super::leaving::back)
+    /// towards where its light came from. Zero for others.
+    pub back: Vec3<L>,
 }
 
 /// Mirror rays, and behind them refracted ones.

@@ -76,9 +76,9 @@ pub struct World {
     pattern_of: Vec<Option<u32>>,
     /// Light from where nothing is.
     pub(crate) background: Background,
-    /// How far a computed hit may be off, in scene units: faces nearer to each other than this along a ray are in one place.
+    /// How far a computed hit may be off the plane of its face, in scene units (`docs/tolerances.md`).
     pub(crate) clearance: f64,
-    /// How far behind its start a ray may still leave a solid: half of what the boxes of the tree are larger than what is in
+    /// How far behind its start a ray may still meet something: half of what the boxes of the tree are larger than what is in
     /// them, so that no way down the tree can hide it.
     pub(crate) behind: f64,
     /// Is no triangle smooth?
