@@ -8,7 +8,7 @@ use common::{cases, close, furnace, glass, mesh, picture, traced};
 use snell::film::Rgb;
 use snell::geometry::{Affine, TriangleMesh, Vec3, make, triangle};
 use snell::render::{Options, render};
-use snell::scene::{Camera, Integrator, Light, Material, Render, Scene, Shadows, Sky, WarningCode};
+use snell::scene::{Camera, Integrator, Light, Material, Render, Scene, Shadows, Sky, Transform, WarningCode};
 use snell::trace::Statistics;
 use snell::world::{CameraFrame, World};
 use snell_formats::scene_file::{self, Syntax};
@@ -170,14 +170,21 @@ fn convex_solids_do_not_shade_or_mirror_themselves() {
                 for (at, around) in places(&placed) {
                     let wo = (eye - at).unit();
                     let normals: Vec<Vec3> = around.iter().map(|&f| triangle::normal(placed.corners(f))).collect();
-                    if normals.iter().any(|n| n.dot(wo) < 1e-3) {
-                        // Hidden, or on the outline, where the ray may pass.
+                    if normals.iter().any(|n| n.dot(wo).abs() < 1e-3) {
+                        // Edge on, and what it shows is anybody's guess.
+                        continue;
+                    }
+                    let outline = normals.iter().any(|n| n.dot(wo) < 0.0);
+                    let normals: Vec<Vec3> = normals.into_iter().filter(|n| n.dot(wo) > 0.0).collect();
+                    if normals.is_empty() {
                         continue;
                     }
                     aimed += 1;
+                    // Along the outline the ray may pass, and the sky is what is seen.
                     let seen = look(&mut lit, eye, at, size).r;
                     let wi = (light - at).unit();
-                    let expected: Vec<f64> = normals.iter().map(|n| n.dot(wi).max(0.0)).collect();
+                    let mut expected: Vec<f64> = normals.iter().map(|n| n.dot(wi).max(0.0)).collect();
+                    expected.extend(outline.then_some(0.0));
                     // Directions err by what places are rounded to, far away by 1e5·2^-53, thirty times that where the eye aims.
                     let fits = expected.iter().any(|e| (e - seen).abs() < 1e-9);
                     assert!(
@@ -186,7 +193,7 @@ fn convex_solids_do_not_shade_or_mirror_themselves() {
                     );
                     let seen = look(&mut mirrored, eye, at, size).r;
                     let heights = normals.iter().map(|&n| (n * (2.0 * n.dot(wo)) - wo).unit().y);
-                    let expected: Vec<f64> = heights.map(|y| 0.5 + 0.5 * y).collect();
+                    let expected: Vec<f64> = heights.chain(outline.then_some(-wo.y)).map(|y| 0.5 + 0.5 * y).collect();
                     let fits = expected.iter().any(|e| (e - seen).abs() < 1e-9);
                     assert!(
                         fits,
@@ -220,10 +227,13 @@ fn the_corners_of_a_room_do_not_leak() {
                 let light = middle + numbers.direction() * (5.0 * size);
                 scene.lights.push(point_light(light));
             }
-            let mut world = World::new(&scene).unwrap();
-            for (at, _) in places(&placed) {
-                let seen = look(&mut world, eye, at, size);
-                assert_eq!(seen, black, "{name}, {size} large, {offset} away, at {at:?}");
+            for shadows in [Shadows::Opaque, Shadows::Tinted] {
+                scene.render.shadows = Some(shadows);
+                let mut world = World::new(&scene).unwrap();
+                for (at, _) in places(&placed) {
+                    let seen = look(&mut world, eye, at, size);
+                    assert_eq!(seen, black, "{name}, {size} large, {offset} away, {shadows:?}, at {at:?}");
+                }
             }
         }
     }
@@ -282,6 +292,44 @@ fn what_is_near_a_wall_is_in_its_shadow() {
                     assert_eq!(seen, Rgb::new(1.0, 0.0, 0.0), "{size}, {offset}: the wall, {side}·{x} from its foot");
                 }
             }
+        }
+    }
+}
+
+/// Another object that is stretched much, and hit where it stands only to some roundings of its own, takes no shadow away.
+#[test]
+fn a_stretched_instance_leaves_shadows_alone() {
+    let black = Rgb::gray(0.0);
+    let chalk = Material { ka: black, kd: Rgb::gray(1.0), ks: black, ..Material::default() };
+    let level = |y: f64, half: f64| make::rectangle(Vec3::new(0.0, y, 0.0), Vec3::new(0.0, 1.0, 0.0), [half, half]);
+    for gap in [1e-8, 1e-9] {
+        let mut scene = stage(level(0.0, 4.0), chalk.clone());
+        mesh(&mut scene, level(gap, 1.0), "it");
+        mesh(&mut scene, make::cuboid(Vec3::new(-0.1, -0.1, -0.1), Vec3::new(0.1, 0.1, 0.1)), "it");
+        let stretched = |x: f64| vec![Transform::Scale([1.0, 1e-6, 1.0]), Transform::Move([x, 1.0, 0.0])];
+        scene.meshes[2].instances = vec![stretched(3.0), stretched(-3.0)];
+        scene.lights.push(point_light(Vec3::new(0.3, 3.0, 0.2)));
+        // Between the floor and the plate, looking at the floor.
+        let eye = Vec3::new(2.0, 0.5 * gap, 0.0);
+        scene.camera.eye = [eye.x, eye.y, eye.z];
+        let seen = look(&mut World::new(&scene).unwrap(), eye, Vec3::new(0.3, 0.0, 0.0), 1.0);
+        assert_eq!(seen, black, "the floor is lit through a plate {gap} above it");
+    }
+}
+
+/// An eye outside of a solid is outside, also where the line by which that is found out meets an edge or a corner.
+#[test]
+fn an_eye_in_line_with_an_edge_is_where_it_is() {
+    let line = Vec3::new(0.309_016_994_374_947_4, 0.754_877_666_246_692_7, 0.578_548_4).unit();
+    for (name, shape) in convex() {
+        let mut scene = stage(shape.clone(), Material::default());
+        glass(&mut scene, "it", 1.5, 0);
+        for (at, _) in places(&shape) {
+            let eye = at - line * 9.0;
+            scene.camera.eye = [eye.x, eye.y, eye.z];
+            scene.camera.look_at = [at.x, at.y, at.z];
+            let (_, tree) = traced(&World::new(&scene).unwrap(), 0, 0);
+            assert_eq!(tree.nodes[0].medium, None, "{name}: the eye is before {at:?}");
         }
     }
 }

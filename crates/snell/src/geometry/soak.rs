@@ -277,7 +277,7 @@ fn attack(dice: &mut Dice, count: &Count, rays: usize) {
             count.decided.fetch_add(u64::from(truth != Truth::Either), Ordering::Relaxed);
             if truth == Truth::Hits {
                 count.hits.fetch_add(1, Ordering::Relaxed);
-                let n = triangle::normal(corners);
+                let n = Exact::area_vector(corners).unit();
                 let off = n.dot(origin + dir * hit.t - corners[0]).abs();
                 // The plane is good to 22 roundings of the distance (`Bvh`'s margin has 32), and this sum errs by some more.
                 let far = corners.iter().map(|&v| (v - origin).length()).fold(0.0, f64::max);

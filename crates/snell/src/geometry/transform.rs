@@ -115,6 +115,15 @@ impl Affine {
         inverse.rows.iter().chain([&inverse.offset]).all(|v| v.is_finite()).then_some(inverse)
     }
 
+    /// By how much more than its own roundings a point is off that goes through this map and back through `inverse`, axis by axis:
+    /// the largest sum of a row of `|M|·|M⁻¹|` (Skeel's condition; Higham, section 7.2). Stretching along axes costs nothing.
+    pub fn condition(&self, inverse: &Self) -> f64 {
+        let size = |v: Vec3| Vec3::new(v.x.abs(), v.y.abs(), v.z.abs());
+        let [x, y, z] = inverse.rows.map(size);
+        let sums = Vec3::new(x.x + x.y + x.z, y.x + y.y + y.z, z.x + z.y + z.z);
+        self.rows.iter().map(|&row| size(row).dot(sums)).fold(0.0, f64::max)
+    }
+
     /// The Frobenius norm of the map without its offset: no vector gets longer by more than this factor.
     pub fn norm(&self) -> f64 {
         self.rows.iter().map(|row| row.dot(*row)).sum::<f64>().sqrt()

@@ -1,5 +1,6 @@
 //! The hits of a generation as columns, and a view of several of them at once.
 
+use super::leaving::together_at_most;
 use super::queue::{Generation, Load, Weight};
 use crate::film::Rgb;
 use crate::geometry::Vec3;
@@ -139,11 +140,29 @@ impl Hits {
                 there = there & !self.found.lanes::<L>(PRIMITIVE, start).eq(L::splat(SKY));
             }
             let nothing = Vec3::new(wx, wy, wz);
-            let [normal, geometric] = if there.any() {
-                world.facing_normals::<L>(&primitives, point, dir, &side)
-            } else {
-                [nothing, nothing]
-            };
+            let mut normals = [nothing, nothing];
+            if there.any() {
+                let rim;
+                (normals, rim) = world.facing_normals::<L>(&primitives, point, dir, &side);
+                // Not where the ray has just started: of the place that it leaves it sees the front, too.
+                let rim = rim & there & self.found.lanes::<L>(T, start).gt(L::splat(together_at_most(world)));
+                if real_optics && rim.any() {
+                    let mut turned = false;
+                    for lane in (0..L::WIDTH).filter(|&lane| rim.test(lane)) {
+                        let front = world.front_of_outline(primitives[lane], point.lane(lane), dir.lane(lane));
+                        if let Some(front) = front {
+                            self.found.replace::<f64, 1>(PRIMITIVE, start + lane, [f64::from(front)]);
+                            primitives[lane] = front as usize;
+                            materials[lane] = f64::from(world.material_of(front as usize));
+                            turned = true;
+                        }
+                    }
+                    if turned {
+                        normals = world.facing_normals::<L>(&primitives, point, dir, &side).0;
+                    }
+                }
+            }
+            let [normal, geometric] = normals;
             let (normal, active) = (normal.unit(), L::Mask::first(self.len() - start));
             let zero = L::splat(0.0);
             let row = [normal.x, normal.y, normal.z, L::load(&materials), zero, zero, zero, zero, zero, zero];

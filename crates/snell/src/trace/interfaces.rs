@@ -37,6 +37,8 @@ pub(crate) struct Ways {
     left: [u8; PACKET],
     /// From where on the medium has been the same, and what the media before have let through.
     since: [f64; PACKET],
+    /// Where it went into or out of a solid last.
+    changed: [f64; PACKET],
     kept: [[f64; PACKET]; 3],
     crossings: Vec<(f64, u32)>,
 }
@@ -53,6 +55,7 @@ impl Default for Ways {
             back: [zero; 3],
             left: [0; PACKET],
             since: zero,
+            changed: zero,
             kept: [[1.0; PACKET]; 3],
             crossings: Vec::new(),
         }
@@ -124,8 +127,13 @@ impl<G: Generation> Kernel for FindInterfaces<'_, '_, G> {
             }
             for ray in ones(all & !met) {
                 // Every body ends somewhere: a ray that leaves the scene in one has missed its way out.
-                if media.within_a_body(index(ways.before[ray]) as u32) {
-                    statistics.stray.add(rays.pixel(first + ray));
+                let before = index(ways.before[ray]) as u32;
+                if before != OUTSIDE {
+                    let (origin, dir) = packet.ways::<f64>(ray);
+                    let ahead = ways.clear[ray].max(packet.t_min[ray]).min(world.reach) + together_at_most(world);
+                    if media.is_lost(before, origin + dir * ahead) {
+                        statistics.stray.add(rays.pixel(first + ray));
+                    }
                 }
                 (packet.t[ray], packet.primitive[ray]) = (f64::INFINITY, SKY);
             }
@@ -212,6 +220,7 @@ impl Ways {
             (band, &mut self.band),
             (t_min, &mut self.clear),
             (zero, &mut self.since),
+            (zero, &mut self.changed),
         ] {
             value.store(&mut column[start..]);
         }
@@ -244,7 +253,7 @@ impl Ways {
     /// the nearest face there that leads out, at once.
     fn leave_where_it_starts(&mut self, media: &Media<'_>, packet: &mut Packet, ray: usize) -> bool {
         let before = index(self.before[ray]) as u32;
-        let is_clear = packet.source[ray] < 0.0 || packet.t_min[ray] > self.clear[ray];
+        let is_clear = packet.t_min[ray] > self.clear[ray];
         if before == OUTSIDE || is_clear || self.left[ray] == AT_ONE_EDGE {
             return false;
         }
@@ -308,7 +317,12 @@ impl Ways {
         }
         if media.top(before) == media.top(after) {
             self.before[ray] = f64::from(after);
-            if after != before && media.overlap(before, after) {
+            // At an edge where solids touch, rounding may have let it into one before it was out of the other.
+            let overlapped = t - self.changed[ray] > together_at_most(world);
+            if after != before {
+                self.changed[ray] = up_to;
+            }
+            if after != before && overlapped && media.overlap(before, after) {
                 let other = world.solids[media.top(after) as usize].primitive;
                 let (pixel, point) = (pixel as u64, origin + dir * t);
                 statistics.overlaps.add(Overlap { pixel, primitives: [primitive, other], point });
@@ -318,7 +332,7 @@ impl Ways {
         let band = index(self.band[ray]) as u32;
         if media.same_index(before, after, band) && !(enters && world.shows(face.1 as usize)) {
             self.absorb(media, ray, face.0);
-            (self.before[ray], self.since[ray]) = (f64::from(after), face.0);
+            (self.before[ray], self.since[ray], self.changed[ray]) = (f64::from(after), face.0, up_to);
             return Met::Nothing(up_to);
         }
         (packet.t[ray], packet.primitive[ray]) = (face.0, f64::from(face.1));

@@ -70,15 +70,26 @@ impl<'a> Media<'a> {
         crossings.clear();
         self.world.tree.crossings(point, dir, [0.0, f64::INFINITY], &mut crossings);
         let mut balance = BTreeMap::new();
-        for &(t, primitive) in &crossings {
-            let solid = self.world.solid_of(primitive as usize);
-            if solid != NO_SOLID {
-                let enters = self.world.enters(primitive as usize, solid, point, dir, t);
-                *balance.entry(solid).or_insert(0) += if enters { -1 } else { 1 };
-                let front = self.world.front_of(primitive as usize);
-                if front != NO_SOLID {
-                    *balance.entry(front).or_insert(0) += if enters { 1 } else { -1 };
+        for place in crossings.chunk_by(|&a, &b| are_in_one_place(self.world, (point, dir), a, b)) {
+            // On an edge several faces are met, which are one way in, one way out, or, along a rim, neither.
+            let mut ways: BTreeMap<u32, (bool, bool)> = BTreeMap::new();
+            let mut met = |solid: u32, enters: bool| {
+                let (in_, out) = ways.entry(solid).or_default();
+                *(if enters { in_ } else { out }) = true;
+            };
+            for &(t, primitive) in place {
+                let solid = self.world.solid_of(primitive as usize);
+                if solid != NO_SOLID {
+                    let enters = self.world.enters(primitive as usize, solid, point, dir, t);
+                    met(solid, enters);
+                    let front = self.world.front_of(primitive as usize);
+                    if front != NO_SOLID {
+                        met(front, !enters);
+                    }
                 }
+            }
+            for (solid, (enters, leaves)) in ways {
+                *balance.entry(solid).or_insert(0) += i32::from(leaves) - i32::from(enters);
             }
         }
         self.crossings = crossings;
@@ -232,10 +243,16 @@ impl<'a> Media<'a> {
         world.lets_through(primitive, point) * pane.passage(cos_theta_i).transmittance
     }
 
-    /// Is it in a solid with a surface of its own? What interfaces fill may be as wide as the sea.
-    pub fn within_a_body(&self, set: u32) -> bool {
-        let solids = &self.sets[set as usize].solids;
-        solids.iter().any(|&solid| self.world.solids[solid as usize].between_faces_of.is_none())
+    /// Is a ray lost that has met no way out of this set and is at `point`? Only if that is really in a body of the set: a ray along
+    /// a rim, or one that was rounded out of a corner, is not. What interfaces fill may be as wide as the sea.
+    pub fn is_lost(&mut self, set: u32, point: Vec3) -> bool {
+        let is_body = |&solid: &u32| self.world.solids[solid as usize].between_faces_of.is_none();
+        let bodies: Vec<u32> = self.sets[set as usize].solids.iter().copied().filter(is_body).collect();
+        if bodies.is_empty() {
+            return false;
+        }
+        let there = self.around(point);
+        bodies.into_iter().any(|solid| self.contains(there, solid))
     }
 
     /// Is a ray in this solid?

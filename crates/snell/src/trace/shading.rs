@@ -128,7 +128,8 @@ impl ShadowRays {
         if !dimmed.any() {
             return lit;
         }
-        let (point, source, medium, wo) = (hits.point(), hits.primitive(), hits.face().before, hits.wo());
+        let (source, medium, wo) = (hits.primitive(), hits.face().before, hits.wo());
+        let point = hits.point() + wo * back(hits.world, hits.t());
         let clear = until_clear(hits.world, hits.geometric_normal().dot(wi));
         let mut dark = 0;
         for lane in 0..L::WIDTH {
@@ -173,8 +174,7 @@ impl ShadowRays {
                 blocked &= blocked - 1;
                 let mut dark = true;
                 if tinted && packet.primitive[row - first] != OPAQUE {
-                    let point = hits.batch::<f64>(world, hit).point();
-                    let way = Leaving { origin: point, ..self.leaving(world, hits, row) };
+                    let way = self.leaving(world, hits, row);
                     let passed = media.light_along(&way, self.rays.at(DISTANCE, row), OUTSIDE);
                     self.light.replace::<f64, 3>(0, hit, passed.into());
                     dark = passed == Rgb::gray(0.0);

@@ -76,6 +76,8 @@ pub struct World {
     pattern_of: Vec<Option<u32>>,
     /// Light from where nothing is.
     pub(crate) background: Background,
+    /// No ray is longer before it hits something: the diagonal of the box around everything, the starts of camera rays included.
+    pub(crate) reach: f64,
     /// How far a computed hit may be off the plane of its face, in scene units (`docs/tolerances.md`).
     pub(crate) clearance: f64,
     /// How far behind its start a ray may still meet something: half of what the boxes of the tree are larger than what is in
@@ -124,6 +126,7 @@ impl World {
             patterns: Vec::new(),
             pattern_of: Vec::new(),
             background: Background::new(scene.background, scene.sky.as_ref()).ok_or_else(|| unread("sky"))?,
+            reach: 0.0,
             clearance: 0.0,
             behind: 0.0,
             all_flat: true,

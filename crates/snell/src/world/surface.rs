@@ -31,6 +31,9 @@ pub(super) struct Surfaces {
     pub corner_normals_of: Vec<u32>,
 }
 
+/// So many times [`World::clearance`] from an edge of a triangle is near it, whatever the angle at which a ray meets it.
+const RIM: f64 = 2048.0;
+
 /// From which side rays meet spheres.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Side<L: Lanes> {
@@ -156,6 +159,24 @@ impl World {
         hit.meets.then_some(hit.t)
     }
 
+    /// The face of the same object that looks at a ray and is in the place where the ray has met the back of an opaque one: along the
+    /// outline of a body both are there, and rounding alone says which is nearer.
+    pub(crate) fn front_of_outline(&self, primitive: usize, point: Vec3, dir: Vec3) -> Option<u32> {
+        if self.solid_of(primitive) != NO_SOLID {
+            return None;
+        }
+        let (object, mut faces) = (self.object_of(primitive as u32), Vec::new());
+        self.tree.near(point, &mut faces);
+        let looks_at_it = |corners: [Vec3; 3]| triangle::normal(corners).dot(dir) < 0.0;
+        let fronts = faces.into_iter().filter(|&face| {
+            let corners = self.corners(face as usize);
+            self.object_of(face) == object
+                && looks_at_it(corners)
+                && triangle::distance(corners, point) <= self.clearance
+        });
+        fronts.min()
+    }
+
     /// Does a line along `dir` stay in the plane of a triangle, as far as hits are exact, all the way past it?
     pub(crate) fn is_edge_on(&self, primitive: usize, dir: Vec3) -> bool {
         if primitive < self.spheres.len() {
@@ -240,8 +261,9 @@ impl World {
         Some(placement.to_model.turn_normal_back(normal))
     }
 
-    /// The shading and the geometric normals at some hits, turned to face rays of these directions, not yet of unit length. The
-    /// geometric normal decides the side, on spheres what is known of it.
+    /// The shading and the geometric normals at some hits, turned to face rays of these directions, not yet of unit length, and which
+    /// hits are on the back of a triangle, near one of its edges. The geometric normal decides the side, on spheres what is known
+    /// of it.
     #[inline(always)]
     pub(crate) fn facing_normals<L: Lanes>(
         &self,
@@ -249,7 +271,7 @@ impl World {
         point: Vec3<L>,
         dir: Vec3<L>,
         side: &Side<L>,
-    ) -> [Vec3<L>; 2] {
+    ) -> ([Vec3<L>; 2], L::Mask) {
         let bit = |lane: usize| u32::from(primitives[lane] < self.spheres.len()) << lane;
         let spheres = L::Mask::from_bits((0..L::WIDTH).map(bit).sum());
         let mut normal = point;
@@ -285,8 +307,17 @@ impl World {
             };
             let behind = flat.dot(dir).gt(L::splat(0.0));
             let (smooth, flat) = (Vec3::select(behind, -smooth, smooth), Vec3::select(behind, -flat, flat));
-            return [Vec3::select(spheres, normal, smooth), Vec3::select(spheres, normal, flat)];
+            let mut rim = behind & !spheres;
+            if rim.any() {
+                let c = Vec3::from_fn(|lane| corners[lane][2]);
+                let near = |a: Vec3<L>, b: Vec3<L>| {
+                    let (along, off) = (b - a, (b - a).cross(point - a));
+                    off.dot(off).le(along.dot(along) * L::splat(self.clearance * self.clearance * RIM * RIM))
+                };
+                rim = rim & (near(a, b) | near(b, c) | near(c, a));
+            }
+            return ([Vec3::select(spheres, normal, smooth), Vec3::select(spheres, normal, flat)], rim);
         }
-        [normal, normal]
+        ([normal, normal], L::Mask::from_bits(0))
     }
 }

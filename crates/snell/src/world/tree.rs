@@ -35,6 +35,7 @@ impl World {
             boxes.push(bounds);
         }
         let (reach, farthest) = (everything.diagonal(), everything.farthest());
+        self.reach = reach;
         self.clearance = MARGIN * (reach + farthest);
         // In the space of a model rays come from everywhere that any of its instances sees, and start a little behind.
         let mut seen: Vec<Bounds> = parts.models.iter().map(|m| Bounds::of(m.vertices.iter().copied())).collect();
@@ -45,7 +46,7 @@ impl World {
             let instance = Instance::new(*model, map, first as u32, bounds, reach, farthest);
             let flat = || problem(*which, format!("an instance of `{name}` is scaled by 0"));
             let instance = instance.ok_or_else(flat)?;
-            self.clearance = self.clearance.max(instance.margin);
+            self.clearance = self.clearance.max(instance.off);
             norms[*model] = instance.to_model.norm().max(norms[*model]);
             seen[*model] = seen[*model].union(Bounds::of(everything.corners().map(|c| instance.to_model.apply(c))));
             let count = self.models[*model].material_of.len();

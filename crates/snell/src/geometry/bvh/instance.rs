@@ -14,10 +14,10 @@ pub struct Instance {
     pub to_model: Affine,
     /// The id of its first triangle; the others follow in the model's order.
     pub first: u32,
-    /// Its box in the space of the tree, with [`margin`](Self::margin).
+    /// Its box in the space of the tree, with room for whatever a hit may be off.
     pub bounds: Bounds,
-    /// How far from where it is a triangle may be hit, in the space of the tree: 32 times what the maps round.
-    pub margin: f64,
+    /// How far from its plane a triangle may be hit, in the space of the tree: 32 times what the maps round.
+    pub off: f64,
 }
 
 impl Instance {
@@ -27,14 +27,16 @@ impl Instance {
     /// Rays are taken into the space of the model, in which the test of a triangle is as exact as ever; but a hit there is
     /// off by the roundings of the map and of its inverse, `2⁻⁵³` of all coordinates, larger by the condition of the map
     /// `‖M‖·‖M⁻¹‖`. How far the map moves counts too: it may bring a model back that is far from its own origin. The box is
-    /// larger by 32 times as much.
+    /// larger by 32 times as much. Off its plane a hit is by less where a map stretches along axes, which the test of a
+    /// triangle takes axis by axis.
     pub fn new(model: usize, to_world: &Affine, first: u32, bounds: Bounds, reach: f64, farthest: f64) -> Option<Self> {
         let to_model = to_world.inverse()?;
         let moved = to_world.apply(Vec3::<f64>::default()).length();
         let margin = MARGIN * to_world.norm() * to_model.norm() * (reach + farthest + moved);
         let room = Vec3::new(margin, margin, margin);
         let bounds = Bounds { min: bounds.min - room, max: bounds.max + room };
-        Some(Self { model, to_model, first, bounds, margin })
+        let off = MARGIN * to_world.condition(&to_model) * (reach + farthest + moved);
+        Some(Self { model, to_model, first, bounds, off })
     }
 }
 
