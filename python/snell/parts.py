@@ -25,8 +25,8 @@ class Camera(Value):
     bounds : (4,), optional
         Left, right, bottom and top of the picture on the image plane; or `fov`.
     near : float, optional
-        Where the image plane is: negative, in front of the eye. Needed with `bounds`; with `fov` a tenth of the way to `look_at`
-        if left out.
+        Where the image plane is: negative, in front of the eye. Needed with `bounds`; with `fov` a tenth of the way to
+        `look_at` if left out.
     far : float, optional
         Ignored, as in the lecture.
     width, height : int, optional

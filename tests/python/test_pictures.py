@@ -207,7 +207,7 @@ def test_what_rendering_comes_upon_is_said() -> None:
     with pytest.warns(snell.SnellWarning, match="W008 overlap: `ball` and `drop` overlap"):
         picture = scene.render()
     assert any("W008" in remark for remark in picture.remarks)
-    # What is known before is said before: the ball of the lecture, cut open by an image plane that stands in its middle.
+    # What is known before is said before: the lecture's ball, cut open by an image plane that stands in its middle.
     with pytest.warns(snell.SnellWarning, match="W009 before-image-plane: .* something of `glass`, which"):
         snell.scenes["lecture/default"].with_("camera.near", -50).render(width=8)
     # Lost light is nothing to be warned of, and is known.
