@@ -22,8 +22,8 @@ class Channels:
     Attributes
     ----------
     depth : ndarray, (height, width)
-        How far the camera ray goes, in scene units: from the eye in `whitted`, from the image plane in the models of the
-        lecture and the course; infinite where it meets nothing.
+        How far the camera ray goes, in scene units: from the eye in `whitted`, from the image plane in the models of
+        the lecture and the course; infinite where it meets nothing.
     normal : ndarray, (height, width, 3)
         The normal there, of unit length, towards the ray; zero where nothing is.
     object : ndarray of int, (height, width)
