@@ -148,7 +148,10 @@ impl Hits {
                 let rim = rim & there & self.found.lanes::<L>(T, start).gt(L::splat(together_at_most(world)));
                 if real_optics && rim.any() {
                     let mut turned = false;
-                    for lane in (0..L::WIDTH).filter(|&lane| rim.test(lane)) {
+                    for lane in 0..L::WIDTH {
+                        if !rim.test(lane) {
+                            continue;
+                        }
                         let front = world.front_of_outline(primitives[lane], point.lane(lane), dir.lane(lane));
                         if let Some(front) = front {
                             self.found.replace::<f64, 1>(PRIMITIVE, start + lane, [f64::from(front)]);

@@ -307,14 +307,15 @@ impl World {
             };
             let behind = flat.dot(dir).gt(L::splat(0.0));
             let (smooth, flat) = (Vec3::select(behind, -smooth, smooth), Vec3::select(behind, -flat, flat));
-            let mut rim = behind & !spheres;
+            let (mut rim, mut near_one) = (behind & !spheres, L::Mask::from_bits(0));
             if rim.any() {
-                let c = Vec3::from_fn(|lane| corners[lane][2]);
-                let near = |a: Vec3<L>, b: Vec3<L>| {
+                let c = Vec3::<L>::from_fn(|lane| corners[lane][2]);
+                let far = RIM * self.clearance;
+                for [a, b] in [[a, b], [b, c], [c, a]] {
                     let (along, off) = (b - a, (b - a).cross(point - a));
-                    off.dot(off).le(along.dot(along) * L::splat(self.clearance * self.clearance * RIM * RIM))
-                };
-                rim = rim & (near(a, b) | near(b, c) | near(c, a));
+                    near_one = near_one | off.dot(off).le(along.dot(along) * L::splat(far * far));
+                }
+                rim = rim & near_one;
             }
             return ([Vec3::select(spheres, normal, smooth), Vec3::select(spheres, normal, flat)], rim);
         }
