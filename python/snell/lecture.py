@@ -86,7 +86,7 @@ def _scene(variables: Mapping[str, Any]) -> Scene:
     if not all(isinstance(thing, Sphere | Mesh | Plane | Box | Lathe) for thing in objects):
         raise SceneError([("objs", "expected globes, meshes, planes, boxes and lathes", None)])
     return Scene(
-        settings=Render("lecture", max_depth=variables.get("trace_depth", 6), transfer="linear"),
+        settings=Render("lecture", max_depth=variables.get("trace_depth", 6), transfer="linear", shadows="opaque"),
         camera=get(*_CAMERAS),
         ambient=get("ambi"),
         eta_outside=variables.get("eta_outside", 1.0),
