@@ -14,7 +14,7 @@
 //!    ([`area`](super::area)). The weights of the edge functions would do for round triangles only: they err by `2⁻⁵³` times the
 //!    aspect.
 //! 3. *Where along it is the triangle?* Grazing rays meet a plane anywhere. The hit is moved into the triangle's own box, with
-//!    [`SLACK`] for what was rounded in 1, which a ray that goes through the triangle surely meets. So no tree of boxes can
+//!    `SLACK` for what was rounded in 1, which a ray that goes through the triangle surely meets. So no tree of boxes can
 //!    hide a hit, and none is refused.
 
 use super::Vec3;
