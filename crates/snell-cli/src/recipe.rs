@@ -5,7 +5,7 @@ use crate::say::{Failure, OrFail, SCENE};
 use serde::{Deserialize, Serialize};
 use snell::explain::text::six_digits;
 use snell::film::Crop;
-use snell::scene::{Integrator, Render, Rounding, Scene, Shadows, Transfer};
+use snell::scene::{Integrator, Rounding, Scene, Shadows, Transfer};
 use snell_formats::driver::Dialect;
 use snell_formats::load::{Kind, Loaded, ModelFile, load_text};
 use snell_formats::{LoadOptions, Report, Source, load};
@@ -48,6 +48,9 @@ pub struct Recipe {
     pub integrator: Option<Integrator>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shadows: Option<Shadows>,
+    /// Where the image plane stands, if the scene does not say.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub near: Option<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub transfer: Option<Transfer>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -95,6 +98,7 @@ impl Recipe {
             bands: None,
             integrator: args.integrator,
             shadows: args.shadows,
+            near: None,
             transfer: args.transfer,
             rounding: args.rounding,
             bits: args.bits,
@@ -142,7 +146,9 @@ impl Recipe {
     }
 
     /// Takes over what the settings of the scene have come to.
-    pub fn resolve(&mut self, render: &Render) {
+    pub fn resolve(&mut self, scene: &Scene) {
+        let render = &scene.render;
+        self.near = Some(scene.camera.image_plane());
         self.spp = Some(render.spp);
         self.seed = Some(render.seed);
         self.depth = Some(render.max_depth);
@@ -154,22 +160,31 @@ impl Recipe {
         self.rounding = Some(render.rounding);
     }
 
-    /// A recipe of Snell before `tinted` became the default of `whitted` means `opaque` where neither it nor its scene names the
-    /// shadows. Writes that out, and returns a note about it.
-    pub fn keep_old_shadows(&mut self, render: &Render) -> Option<&'static str> {
-        let integrator = self.integrator.unwrap_or(render.integrator);
-        if integrator != Integrator::Whitted || self.shadows.or(render.shadows).is_some() {
-            return None;
+    /// Where neither a recipe nor its scene says, a recipe means the defaults of the Snell that made it. Writes out those that have
+    /// changed since, and returns a note about each.
+    pub fn keep_old_defaults(&mut self, scene: &Scene) -> Vec<&'static str> {
+        let integrator = self.integrator.unwrap_or(scene.render.integrator);
+        let mut notes = Vec::new();
+        if integrator == Integrator::Whitted && self.shadows.or(scene.render.shadows).is_none() {
+            self.shadows = Some(Shadows::Opaque);
+            notes.push(
+                "the picture was made when `whitted` had opaque shadows by default, and gets them again; the default is `tinted` \
+                 now: to have that, render its scene (`snell info --scene` prints it) with --shadows tinted",
+            );
         }
-        self.shadows = Some(Shadows::Opaque);
-        Some(
-            "the picture was made when `whitted` had opaque shadows by default, and gets them again; the default is `tinted` now: \
-             to have that, render its scene (`snell info --scene` prints it) with --shadows tinted",
-        )
+        if !integrator.starts_at_eye() && self.near.or(scene.camera.near).is_none() {
+            self.near = Some(-1.0);
+            notes.push(
+                "the picture was made when the image plane stood at `near` = -1 by default, and stands there again; the default is \
+                 a tenth of the way to `look_at` now: to have that, render its scene (`snell info --scene` prints it)",
+            );
+        }
+        notes
     }
 
     /// Puts the settings into the scene. Returns a note if the bounds were widened.
     pub fn apply(&self, scene: &mut Scene) -> Option<String> {
+        scene.camera.near = scene.camera.near.or(self.near);
         let render = &mut scene.render;
         render.spp = self.spp.unwrap_or(render.spp);
         render.seed = self.seed.unwrap_or(render.seed);

@@ -143,7 +143,7 @@ fn again(from: &Path, args: &RenderArgs, output: &Path) -> Outcome {
         Failure::new(FAILED, Report::error(format!("the recipe in `{}` cannot be read: {e}", from.display())))
     })?;
     let loaded = recipe.load(&args.reading.search)?;
-    if let Some(note) = recipe.keep_old_shadows(&loaded.scene.render) {
+    for note in recipe.keep_old_defaults(&loaded.scene) {
         match args.progress {
             ProgressKind::Json => eprintln!("{}", json!({ "event": "note", "message": note })),
             ProgressKind::Auto if args.quiet => {}
@@ -156,7 +156,7 @@ fn again(from: &Path, args: &RenderArgs, output: &Path) -> Outcome {
 /// Renders one picture.
 fn one(mut recipe: Recipe, mut loaded: Loaded, args: &RenderArgs, output: &Path) -> Outcome {
     let widened = recipe.apply(&mut loaded.scene);
-    recipe.resolve(&loaded.scene.render);
+    recipe.resolve(&loaded.scene);
     let preparing = Phase::start(args.progress, args.quiet, "preparing", &recipe.name);
     let world = loaded.build(args.bvh, args.threads.into()).or_fail(SCENE)?;
     drop(preparing);

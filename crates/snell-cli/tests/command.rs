@@ -190,11 +190,43 @@ fn a_picture_made_by_an_older_default_is_made_again_by_it() {
         assert!(!told.contains("note"), "{file}: {told}");
     }
     // And so that it stays so, all that a scene may leave out is written out.
-    let settings = ["spp", "seed", "depth", "min_throughput", "bands", "integrator", "shadows", "transfer", "rounding"];
+    let settings =
+        ["spp", "seed", "depth", "min_throughput", "bands", "integrator", "shadows", "near", "transfer", "rounding"];
     for file in ["new.png", "again.png"] {
         assert!(settings.iter().all(|&key| !recipe(file)[key].is_null()), "{}", recipe(file));
     }
     assert_eq!((&recipe("new.png")["shadows"], &recipe("again.png")["shadows"]), (&json!("tinted"), &json!("opaque")));
+}
+
+/// The same of where the image plane stands, which an angle of view left to a default of one unit.
+#[test]
+fn an_older_image_plane_stays_where_it_was() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let text = GLASS.replace("'whitted'", "'lecture'").replace("bounds = [-2, 2, -2, 2]\nnear = -5", "fov = 40");
+    fs::write(at.join("fov.toml"), text).unwrap();
+    render(at, &["fov.toml", "--set", "camera.near=-1", "-o", "then.png"]);
+    let picture = snell_formats::picture::read(&at.join("then.png")).unwrap();
+    let mut recipe: serde_json::Value = serde_json::from_str(&picture.recipe.unwrap()).unwrap();
+    recipe.as_object_mut().unwrap().retain(|key, _| key != "set" && key != "near");
+    let scene = |text: &str| {
+        let source = snell_formats::Source::new("fov.toml", text);
+        snell_formats::scene_file::parse(&source, snell_formats::scene_file::Syntax::Toml).unwrap()
+    };
+    let then = scene(&fs::read_to_string(at.join("fov.toml")).unwrap().replace("fov = 40", "fov = 40\nnear = -1"));
+    let world = snell::world::World::new(&then).unwrap();
+    let film = snell::render::render(&world, &snell::render::Options::default()).unwrap().film;
+    let encoding = snell::film::transfer::Encoding { transfer: then.render.transfer, rounding: then.render.rounding };
+    let png = snell_formats::picture::Format::Png { sixteen_bit: false };
+    snell_formats::picture::write(&at.join("old.png"), png, &film, encoding, Some(&recipe.to_string())).unwrap();
+    let told = stderr(&run(at, &["render", "--from", "old.png", "-o", "again.png"]));
+    assert!(told.contains("`near` = -1") && !told.contains("differ"), "{told}");
+    run(at, &["diff", "again.png", "then.png"]);
+    // And what is made today says where the plane stands, which is elsewhere.
+    render(at, &["fov.toml", "-o", "new.png"]);
+    let told = stderr(&run(at, &["render", "--from", "new.png", "-o", "again.png"]));
+    assert!(!told.contains("near"), "{told}");
+    run(at, &["diff", "again.png", "new.png"]);
 }
 
 const TRIANGLE: &str = "v -1 -1 0\nv 1 -1 0\nv 0 1 0\nusemtl m\nf 1 2 3\n";

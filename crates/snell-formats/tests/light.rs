@@ -100,8 +100,8 @@ fn stage(geometry: TriangleMesh, material: Material) -> Scene {
     scene
 }
 
-/// Looks from the eye of a world at a point.
-fn look(world: &mut World, eye: Vec3, at: Vec3, size: f64) -> Rgb {
+/// Turns the camera of a world, from its eye to a point.
+fn aim(world: &mut World, eye: Vec3, at: Vec3, size: f64) {
     let up = if (at - eye).unit().y.abs() > 0.9 { [1.0, 0.0, 0.0] } else { [0.0, 1.0, 0.0] };
     let camera = Camera::new(
         [eye.x, eye.y, eye.z],
@@ -111,6 +111,11 @@ fn look(world: &mut World, eye: Vec3, at: Vec3, size: f64) -> Rgb {
         -0.5 * (at - eye).length(),
     );
     world.camera = CameraFrame::new(&camera, &world.render);
+}
+
+/// What is seen there.
+fn look(world: &mut World, eye: Vec3, at: Vec3, size: f64) -> Rgb {
+    aim(world, eye, at, size);
     traced(world, 0, 0).0
 }
 
@@ -457,15 +462,7 @@ fn glass_is_left_at_its_edges() {
                 scene.camera.eye = [eye.x, eye.y, eye.z];
                 let mut world = World::new(&scene).unwrap();
                 for (at, _) in places(&placed).into_iter().chain([(middle, vec![])]) {
-                    let up = if (at - eye).unit().y.abs() > 0.9 { [1.0, 0.0, 0.0] } else { [0.0, 1.0, 0.0] };
-                    let camera = Camera::new(
-                        [eye.x, eye.y, eye.z],
-                        [at.x, at.y, at.z],
-                        up,
-                        [-size, size, -size, size],
-                        -0.5 * (at - eye).length(),
-                    );
-                    world.camera = CameraFrame::new(&camera, &world.render);
+                    aim(&mut world, eye, at, size);
                     let (radiance, tree) = traced(&world, 0, 0);
                     let whole = (radiance + tree.lost).r;
                     assert!((whole - 1.0).abs() < 1e-12, "{name}, {size} large, {offset} away: {whole} at {at:?}");

@@ -201,6 +201,25 @@ mod tests {
         assert_eq!(normal(unit), dir);
     }
 
+    #[test]
+    fn a_point_is_as_far_from_a_triangle_as_geometry_has_it() {
+        let corners = [[0.0, 0.0, 1.0], [4.0, 0.0, 1.0], [0.0, 3.0, 1.0]].map(Vec3::from);
+        for (point, expected) in [
+            ([1.0, 1.0, 3.0], 2.0),
+            ([1.0, 1.0, 1.0], 0.0),
+            ([2.0, 1.5, -1.0], 2.0),
+            ([2.0, -3.0, 1.0], 3.0),
+            ([-3.0, -4.0, 1.0], 5.0),
+            ([7.0, 0.0, 5.0], 5.0),
+            // Beyond the long edge, across which (3, 4) points.
+            ([2.0 + 0.6, 1.5 + 0.8, 1.0], 1.0),
+        ] {
+            let found = distance(corners, point.into());
+            // A few roundings of numbers up to 7.
+            assert!((found - expected).abs() < 4e-15, "{found} from {point:?}");
+        }
+    }
+
     proptest! {
         /// A fan of triangles around a vertex has no hole: rays aimed at its edges and its centre hit, far from the
         /// origin too, where a tolerance in scene units would fail.

@@ -16,8 +16,8 @@
 //! "Within" is [`World::clearance`](crate::world::World), what a hit may be off. Everything farther away blocks light.
 //!
 //! And what is in the way of a ray that goes back, to a light or from a mirror, is asked from a place a little [`back`] on the
-//! way on which the surface was reached: there it is surely on the right side of whatever else is there. Distances and directions stay
-//! those of the place itself.
+//! way on which the surface was reached: there it is surely on the right side of whatever else is there. The direction stays that of
+//! the place itself, and so do distances, except that tinted light is dimmed from where it is asked for.
 
 use crate::geometry::Vec3;
 use crate::lanes::{Lanes, index};

@@ -20,9 +20,6 @@ const ORIGIN: usize = 1;
 const DISTANCE: usize = 7;
 const CLEAR: usize = 9;
 
-/// For a primitive that a ray has met: something through which no light goes, whatever it is.
-const OPAQUE: f64 = -2.0;
-
 /// Rays towards one light; the memory is used again for the next one.
 #[derive(Debug, Default)]
 pub(crate) struct ShadowRays {
@@ -173,7 +170,7 @@ impl ShadowRays {
                 let hit = index(self.rays.at(HIT, row));
                 blocked &= blocked - 1;
                 let mut dark = true;
-                if tinted && packet.primitive[row - first] != OPAQUE {
+                if tinted {
                     let way = self.leaving(world, hits, row);
                     let passed = media.light_along(&way, self.rays.at(DISTANCE, row), OUTSIDE);
                     self.light.replace::<f64, 3>(0, hit, passed.into());
@@ -187,7 +184,6 @@ impl ShadowRays {
     }
 
     /// Which of the blocked rays of a packet are still blocked, if what is only a part of the place that they leave does not count.
-    /// Where something opaque is met at once, this is what is noted as met.
     #[inline(always)]
     fn look_closer<L: Lanes>(
         &self,
@@ -202,12 +198,7 @@ impl ShadowRays {
             let ray = waiting.trailing_zeros() as usize & (PACKET - 1);
             waiting &= waiting - 1;
             let [distance, clear] = [DISTANCE, CLEAR].map(|column| self.rays.at(column, first + ray));
-            if packet.t[ray] > clear {
-                continue;
-            }
-            if self.leaving(world, hits, first + ray).is_blocked(world, distance) {
-                packet.primitive[ray] = OPAQUE;
-            } else {
+            if packet.t[ray] <= clear && !self.leaving(world, hits, first + ray).is_blocked(world, distance) {
                 blocked &= !(1 << ray);
                 again |= 1 << ray;
                 (packet.t_min[ray], packet.t[ray], packet.primitive[ray]) = (clear, distance, -1.0);

@@ -38,7 +38,7 @@ impl World {
                     let corners = face.map(|v| map.apply(triangles.vertices[v as usize]));
                     let bounds = Bounds::of(corners);
                     for lamp in lamps.iter_mut().filter(|lamp| is_near(lamp.at, &bounds, clearance)) {
-                        lamp.offer(distance(lamp.at, corners), id, clearance);
+                        lamp.offer(triangle::distance(corners, lamp.at), id, clearance);
                     }
                 }
             }
@@ -82,41 +82,4 @@ fn is_near(point: Vec3, bounds: &Bounds, distance: f64) -> bool {
         let (low, high) = (bounds.min.component(axis) - distance, bounds.max.component(axis) + distance);
         (low..=high).contains(&point.component(axis))
     })
-}
-
-/// From a point to a triangle: to its plane above its inside, otherwise to the nearest edge.
-fn distance(point: Vec3, [a, b, c]: [Vec3; 3]) -> f64 {
-    let normal = triangle::normal([a, b, c]);
-    let edges = [[a, b], [b, c], [c, a]];
-    let to_edge = edges.map(|[from, to]| {
-        let (edge, v) = (to - from, point - from);
-        (v - edge * (v.dot(edge) / edge.dot(edge)).clamp(0.0, 1.0)).length()
-    });
-    let to_edges = to_edge.into_iter().fold(f64::INFINITY, f64::min);
-    let above = edges.iter().all(|&[from, to]| (to - from).cross(point - from).dot(normal) >= 0.0);
-    if above { to_edges.min((point - a).dot(normal).abs()) } else { to_edges }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_point_is_as_far_from_a_triangle_as_geometry_has_it() {
-        let corners = [[0.0, 0.0, 1.0], [4.0, 0.0, 1.0], [0.0, 3.0, 1.0]].map(Vec3::from);
-        for (point, expected) in [
-            ([1.0, 1.0, 3.0], 2.0),
-            ([1.0, 1.0, 1.0], 0.0),
-            ([2.0, 1.5, -1.0], 2.0),
-            ([2.0, -3.0, 1.0], 3.0),
-            ([-3.0, -4.0, 1.0], 5.0),
-            ([7.0, 0.0, 5.0], 5.0),
-            // Beyond the long edge, across which (3, 4) points.
-            ([2.0 + 0.6, 1.5 + 0.8, 1.0], 1.0),
-        ] {
-            let found = distance(point.into(), corners);
-            // A few roundings of numbers up to 7.
-            assert!((found - expected).abs() < 4e-15, "{found} from {point:?}");
-        }
-    }
 }

@@ -2,6 +2,7 @@
 
 use super::{NO_SOLID, World};
 use crate::film::Rgb;
+use crate::geometry::area::area_vector;
 use crate::geometry::ray::{Heading, axes, main_axis};
 use crate::geometry::{Affine, Bounds, Sphere, Vec3, sphere, triangle};
 use crate::lanes::{Lanes, MAX_WIDTH, Mask};
@@ -219,7 +220,7 @@ impl World {
         const SINGLE: f64 = 1.0 / (1u64 << 24) as f64;
         let size = self.solids.get(self.solid_of(primitive) as usize).map_or(0.0, |solid| solid.bounds.diagonal());
         let longest = (b - a).length().max((c - b).length()).max((a - c).length());
-        let height = (b - a).cross(c - a).length() / longest;
+        let height = area_vector([a, b, c]).length() / longest;
         3.0 * (SINGLE * size + self.clearance) / height
     }
 
