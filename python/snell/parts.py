@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -95,6 +96,10 @@ class Material(Value):
     colors: ClassVar[frozenset[str]] = frozenset(
         {"ka", "kd", "ks", "kr", "ko", "emission", "attenuation_color", "sigma_a"}
     )
+
+    def plain(self, place: str = "") -> dict[str, Any]:
+        """Return the form of the file. An infinite Abbe number is no dispersion, and left out: JSON has no infinity."""
+        return Value.plain(self.replace(abbe=None) if self.abbe == math.inf else self, place)
 
 
 @dataclass(eq=False, repr=False)

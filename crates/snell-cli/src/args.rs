@@ -1,6 +1,7 @@
 //! What can be typed.
 
 use clap::builder::styling::{AnsiColor, Styles};
+use clap::builder::{PossibleValue, StringValueParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use serde::de::IntoDeserializer;
 use serde::de::value::{Error as ValueError, StrDeserializer};
@@ -8,7 +9,9 @@ use snell::film::Crop;
 use snell::geometry::bvh::Quality;
 use snell::lanes::LaneWidth;
 use snell::scene::{Integrator, MAX_DEPTH, MAX_SPP, Rounding, Shadows, Transfer};
+use snell_formats::builtin::SCENES;
 use snell_formats::driver::Dialect;
+use std::ffi::OsStr;
 use std::path::PathBuf;
 
 const STYLES: Styles = Styles::styled()
@@ -24,7 +27,7 @@ Start here:
   snell scenes                         what else is built in
   snell scenes --save lecture/default  a copy to change
 
-Exit codes: 0 done, 1 difference or failure, 2 wrong usage, 3 the scene cannot be drawn, 130 stopped by ^C")]
+Exit codes: 0 done, 1 difference or failure, 2 wrong usage, 3 the scene cannot be drawn, 130 stopped (^C, SIGTERM, SIGHUP)")]
 pub struct Arguments {
     #[command(subcommand)]
     pub command: Command,
@@ -58,21 +61,20 @@ Examples:
   snell render driver00.txt -o driver00.ppm --search models/
   snell render lecture/default --size 4096x4096 --crop 1800,1800,400,400 -o rim.exr
   snell render drivers/*.txt -o out/
-  snell render --from glass.png -o again.png")]
+  snell render --from glass.png -o smooth.png --spp 64
+  snell render - -o - --format ppm < scene.toml > picture.ppm")]
 pub struct RenderArgs {
-    /// Scene files, driver files, or names of built-in scenes
-    #[arg(required_unless_present = "from", value_name = "SCENE")]
+    /// Scene files, driver files, or names of built-in scenes; - is standard input
+    #[arg(required_unless_present = "from", value_name = "SCENE", value_parser = SceneName, hide_possible_values = true)]
     pub scenes: Vec<String>,
-    /// The picture, or a folder for many; the ending decides the format: .png .ppm .exr .npy
+    /// The picture, or a folder for many; the ending decides the format: .png .ppm .exr .npy; - is standard output
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
-    /// Format of the pictures in a folder
+    /// Format of the pictures in a folder, and on standard output
     #[arg(long, value_name = "FORMAT", value_parser = ["png", "ppm", "exr", "npy"], default_value = "png")]
     pub format: String,
-    /// Render a picture again, from what a PNG or EXR of Snell remembers
-    #[arg(long, value_name = "PICTURE", conflicts_with_all = [
-        "scenes", "size", "stretch", "crop", "spp", "depth", "integrator", "shadows", "transfer", "rounding", "set", "dialect",
-    ])]
+    /// Render a picture again, from what a PNG or EXR of Snell remembers, with what is changed by other options
+    #[arg(long, value_name = "PICTURE", conflicts_with_all = ["scenes", "dialect"])]
     pub from: Option<PathBuf>,
 
     /// Width and height in pixels; another shape than the scene's shows more, `--stretch` does not
@@ -111,10 +113,10 @@ pub struct RenderArgs {
     pub shadows: Option<Shadows>,
 
     /// One layer for each of the N strongest ways of light, and one for the rest: an EXR whose layers add up to the picture
-    #[arg(long, value_name = "N", conflicts_with_all = ["from", "only"], value_parser = clap::value_parser!(u32).range(1..=1000), help_heading = "Light")]
+    #[arg(long, value_name = "N", conflicts_with = "only", value_parser = clap::value_parser!(u32).range(1..=1000), help_heading = "Light")]
     pub paths: Option<u32>,
     /// Only the light of one way, like "glass(refract) green"
-    #[arg(long, value_name = "WAY", conflicts_with = "from", help_heading = "Light")]
+    #[arg(long, value_name = "WAY", help_heading = "Light")]
     pub only: Option<String>,
 
     #[command(flatten)]
@@ -124,7 +126,7 @@ pub struct RenderArgs {
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024), help_heading = "Work")]
     pub threads: u16,
     /// Edge of a tile in pixels; the picture does not depend on it
-    #[arg(long, value_name = "N", default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..=4096), help_heading = "Work")]
+    #[arg(long, value_name = "N", default_value_t = TILE, value_parser = clap::value_parser!(u32).range(1..=4096), help_heading = "Work")]
     pub tile: u32,
     /// How many numbers are computed together: 1, 2, 4 or 8; left out: as many as this machine has instructions for; the
     /// picture does not depend on it
@@ -152,9 +154,11 @@ Examples:
   snell explain lecture/default 256,400 --light left         why is this light missing here?
   snell explain lecture/default 256,256 --without glass      the same pixel without an object
   snell explain lecture/default 256,256 --set material.glass.eta=1.05
-  snell explain lecture/default --find green --mask green.png")]
+  snell explain lecture/default --find green --mask green.png
+  snell explain glass.png 100,80                             of the scene that a picture remembers")]
 pub struct ExplainArgs {
-    /// A scene file, a driver file, or the name of a built-in scene
+    /// A scene file, a driver file, the name of a built-in scene, or a PNG or EXR of Snell; - is standard input
+    #[arg(value_parser = SceneName, hide_possible_values = true)]
     pub scene: String,
     /// Column and row of the pixel, from the top left
     #[arg(value_name = "X,Y", value_parser = pixel, required_unless_present = "find")]
@@ -220,7 +224,7 @@ pub struct ReadingArgs {
 
 impl From<&ReadingArgs> for snell_formats::LoadOptions {
     fn from(args: &ReadingArgs) -> Self {
-        Self { search: args.search.clone(), dialect: args.dialect, set: args.set.clone() }
+        Self { search: args.search.clone(), dialect: args.dialect, set: args.set.clone(), integrator: None }
     }
 }
 
@@ -241,7 +245,8 @@ Examples:
   snell info glass.png           how it was made
   snell info glass.png --scene   the text of its scene")]
 pub struct InfoArgs {
-    /// Scene file, driver file, built-in name, or picture
+    /// Scene file, driver file, built-in name, or picture; - is standard input
+    #[arg(value_parser = SceneName, hide_possible_values = true)]
     pub file: String,
     /// Print the text of the scene, as it is in the file, and nothing else
     #[arg(long, conflicts_with = "set")]
@@ -255,7 +260,7 @@ pub struct InfoArgs {
 #[command(after_help = "Examples:\n  snell scenes\n  snell scenes --save lecture/default -o mine.toml")]
 pub struct ScenesArgs {
     /// Write this built-in scene to a file
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", value_parser = SceneName, hide_possible_values = true)]
     pub save: Option<String>,
     /// The file; NAME.toml in this folder if left out
     #[arg(short, long, value_name = "FILE", requires = "save")]
@@ -273,9 +278,10 @@ Examples:
   snell convert driver00.txt -o driver00.toml
   snell convert lecture/default -o default.json")]
 pub struct ConvertArgs {
-    /// Driver file, scene file, or built-in name
+    /// Driver file, scene file, or built-in name; - is standard input
+    #[arg(value_parser = SceneName, hide_possible_values = true)]
     pub file: String,
-    /// The scene file, .toml or .json; printed as TOML if left out
+    /// The scene file, .toml or .json, with large meshes in files beside it; printed as TOML if left out
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
     /// Overwrite the file if there is one
@@ -344,6 +350,28 @@ pub struct CheckArgs {
     /// Print everything as JSON
     #[arg(long)]
     pub json: bool,
+}
+
+/// Edge of a tile in pixels, if nobody says: that of the library.
+const TILE: u32 = snell::render::TILE_SIZE;
+
+/// Any text, but shells complete the names of built-in scenes.
+#[derive(Clone)]
+struct SceneName;
+
+impl TypedValueParser for SceneName {
+    type Value = String;
+    fn parse_ref(
+        &self,
+        command: &clap::Command,
+        argument: Option<&clap::Arg>,
+        value: &OsStr,
+    ) -> Result<String, clap::Error> {
+        StringValueParser::new().parse_ref(command, argument, value)
+    }
+    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
+        Some(Box::new(SCENES.iter().map(|(name, _)| PossibleValue::new(*name))))
+    }
 }
 
 fn share(text: &str) -> Result<f64, String> {

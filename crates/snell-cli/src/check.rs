@@ -2,28 +2,45 @@
 
 use crate::args::CheckArgs;
 use crate::excerpt::plain;
+use crate::input::{self, what_is};
+use crate::output::{refuse_existing, refuse_inputs};
 use crate::say::{self, FAILED, Failure, OrFail, Outcome, SCENE, USAGE};
 use crate::solid_text::{as_json, as_text, done_json, done_text};
 use snell::geometry::TriangleMesh;
 use snell::geometry::solid::{Options, Report as Findings, Verdict, check, repair};
-use snell_formats::model::{ObjModel, parse_model, write_obj};
-use snell_formats::{LoadOptions, Report, disk, load};
+use snell::scene::WarningCode;
+use snell_formats::given::Given;
+use snell_formats::model::{Model, parse_model, write_obj};
+use snell_formats::{LoadOptions, Report, disk};
 use std::path::Path;
 use std::sync::Arc;
 
 pub fn run(args: &CheckArgs) -> Outcome {
-    if let Some(output) = &args.output {
-        may_write(output, args.force)?;
-    }
     let path = Path::new(&args.model);
-    let is_model = path.extension().is_some_and(|e| ["obj", "ply", "stl"].iter().any(|m| e.eq_ignore_ascii_case(m)));
-    if is_model { one_model(args, path) } else { all_meshes(args) }
+    if let Some(output) = &args.output {
+        may_write(output, path, args.force)?;
+    }
+    let named = path.extension().is_some_and(|e| ["obj", "ply", "stl"].iter().any(|m| e.eq_ignore_ascii_case(m)));
+    match what_is(&args.model) {
+        Given::Model(_) => one_model(args, path),
+        _ if named => one_model(args, path),
+        Given::Foreign(what, help) => {
+            let report = Report::error(format!("`{}` is {what}, which is not read", args.model));
+            Err(Failure::new(SCENE, report.help(help)))
+        }
+        Given::Picture(what) => {
+            Err(Failure::new(SCENE, Report::error(format!("`{}` is {what}, not a model", args.model))))
+        }
+        _ => all_meshes(args),
+    }
 }
 
 fn one_model(args: &CheckArgs, path: &Path) -> Outcome {
     let bytes = disk::read(path, disk::MAX_MODEL_BYTES).or_fail(SCENE)?;
-    let ObjModel { mesh, libraries, warnings } = parse_model(path, &bytes).or_fail(SCENE)?;
+    let Model { mesh, libraries, lost_uv, mut warnings, .. } = parse_model(path, &bytes).or_fail(SCENE)?;
     drop(bytes);
+    // Of no matter here.
+    warnings.extend(lost_uv.map(|report| Report { warning: Some(WarningCode::NotDrawn.code()), ..report }));
     say::reports(&warnings);
     let findings = check(&mesh);
     let Some(output) = &args.output else {
@@ -50,7 +67,7 @@ fn all_meshes(args: &CheckArgs) -> Outcome {
         let report = Report::error("only models are mended, not the meshes of a scene");
         return Err(Failure::new(USAGE, report.help("models end in .obj, .ply or .stl")));
     }
-    let loaded = load(&args.model, &LoadOptions::default()).or_fail(SCENE)?;
+    let loaded = input::scene(&args.model, &LoadOptions::default())?;
     loaded.world().or_fail(SCENE)?;
     let (mut texts, mut all) = (Vec::new(), Vec::new());
     let mut json = Vec::new();
@@ -95,14 +112,14 @@ fn advice(args: &CheckArgs, findings: &Findings) -> String {
 }
 
 /// A file that is there, the model itself above all, is not written over unless asked.
-fn may_write(output: &Path, force: bool) -> Outcome {
+fn may_write(output: &Path, model: &Path, force: bool) -> Outcome {
     if !output.extension().is_some_and(|e| e.eq_ignore_ascii_case("obj")) {
         let report = Report::error("a mended model is written as OBJ").help("like -o mended.obj");
         return Err(Failure::new(USAGE, report));
     }
-    if output.exists() && !force {
-        let report = Report::error(format!("`{}` exists", output.display()));
-        return Err(Failure::new(USAGE, report.help("choose another name with -o, or overwrite it with --force")));
+    if !force {
+        refuse_inputs(output, [model])?;
     }
+    refuse_existing(output, force).or_fail(USAGE)?;
     disk::check_writable(output).or_fail(FAILED)
 }

@@ -1,16 +1,18 @@
 //! `snell convert`.
 
 use crate::args::ConvertArgs;
+use crate::input;
+use crate::output::{is_standard, refuse_existing, refuse_inputs};
 use crate::say::{self, FAILED, Failure, OrFail, Outcome, SCENE, USAGE};
-use crate::scenes::save;
 use snell_formats::load::Loaded;
 use snell_formats::scene_file::{self, Syntax};
-use snell_formats::{LoadOptions, Report, load};
+use snell_formats::{LoadOptions, Report, disk};
 use std::path::{Component, Path, PathBuf};
 
 pub fn run(args: &ConvertArgs) -> Outcome {
-    let syntax = match args.output.as_deref().and_then(Path::extension).map(|e| e.to_string_lossy().to_lowercase()) {
-        None if args.output.is_none() => Syntax::Toml,
+    let output = args.output.as_deref().filter(|output| !is_standard(output));
+    let syntax = match output.and_then(Path::extension).map(|e| e.to_string_lossy().to_lowercase()) {
+        None if output.is_none() => Syntax::Toml,
         Some(ending) if ending == "toml" => Syntax::Toml,
         Some(ending) if ending == "json" => Syntax::Json,
         _ => {
@@ -18,22 +20,47 @@ pub fn run(args: &ConvertArgs) -> Outcome {
             return Err(Failure::new(USAGE, report.help("like -o scene.toml")));
         }
     };
-    let mut loaded = load(&args.file, &LoadOptions::from(&args.reading)).or_fail(SCENE)?;
+    let mut loaded = input::scene(&args.file, &LoadOptions::from(&args.reading))?;
     let world = loaded.world().or_fail(SCENE)?;
     say::reports(&loaded.warnings_with(&world));
 
-    let folder = args.output.as_deref().and_then(Path::parent).unwrap_or(Path::new(""));
+    let folder = output.and_then(Path::parent).unwrap_or(Path::new(""));
+    let name_of = |path: &Path| relative(path, folder);
     for (mesh, path) in loaded.scene.meshes.iter_mut().zip(&loaded.mesh_paths) {
         if let Some(path) = path {
-            mesh.file = Some(relative(path, folder));
+            mesh.file = Some(name_of(path));
         }
     }
-    let text = scene_file::to_text(&loaded.scene, syntax).or_fail(FAILED)?;
-    let text = if syntax == Syntax::Toml { heading(&loaded) + &text } else { text };
-    match &args.output {
-        Some(output) => save(output, &text, args.force),
-        None => say::print(&text),
+    for texture in loaded.scene.textures.values_mut() {
+        let path = texture.image.as_ref().and_then(|image| loaded.picture_paths.get(image));
+        texture.image = path.map(|path| name_of(path)).or(texture.image.take());
     }
+    if let Some(sky) = &mut loaded.scene.sky {
+        let path = sky.image.as_ref().and_then(|image| loaded.picture_paths.get(image));
+        sky.image = path.map(|path| name_of(path)).or(sky.image.take());
+    }
+    let heading = if syntax == Syntax::Toml { heading(&loaded) } else { String::new() };
+    let Some(output) = output else {
+        let text = heading + &scene_file::to_text(&loaded.scene, syntax).or_fail(FAILED)?;
+        if text.len() as u64 > disk::MAX_SCENE_BYTES {
+            let report =
+                Report::error(format!("this scene has {} bytes as text, which are not read again", text.len()));
+            return Err(Failure::new(FAILED, report.help("with -o scene.toml large meshes go into files beside it")));
+        }
+        return say::print(&text);
+    };
+    // The scene itself may be rewritten by --force, but nothing that it names.
+    let read: Vec<&Path> = loaded.files().filter(|path| !args.force || Some(*path) != loaded.path.as_deref()).collect();
+    let may_write = |path: &Path| {
+        refuse_inputs(path, read.iter().copied()).map_err(|mut failure| failure.reports.remove(0))?;
+        refuse_existing(path, args.force)?;
+        disk::check_writable(path)
+    };
+    let written = scene_file::save(loaded.scene.clone(), output, syntax, &heading, may_write).or_fail(FAILED)?;
+    for beside in &written[..written.len() - 1] {
+        say::tell(&beside.display().to_string());
+    }
+    Ok(())
 }
 
 fn heading(loaded: &Loaded) -> String {

@@ -1,8 +1,8 @@
 //! `snell diff`.
 
 use crate::args::DiffArgs;
-use crate::render::same_file;
-use crate::say::{self, FAILED, Failure, OrFail, Outcome, USAGE};
+use crate::output::refuse_inputs;
+use crate::say::{self, FAILED, Failure, OrFail, Outcome, USAGE, tell};
 use snell::film::transfer::Encoding;
 use snell::film::{Crop, Film, Rgb};
 use snell::scene::{Rounding, Transfer};
@@ -14,11 +14,8 @@ pub fn run(args: &DiffArgs) -> Outcome {
         return Err(Failure::new(USAGE, Report::error("a tolerance is a number from 0 on")));
     }
     let format = args.output.as_deref().map(Format::of).transpose().or_fail(USAGE)?;
-    if let Some(output) = &args.output
-        && [&args.a, &args.b].iter().any(|input| same_file(input, output))
-    {
-        let report = Report::error(format!("`{}` is one of the pictures compared", output.display()));
-        return Err(Failure::new(USAGE, report.help("give the difference another name")));
+    if let Some(output) = &args.output {
+        refuse_inputs(output, [args.a.as_path(), args.b.as_path()])?;
     }
     let (a, b) = (picture::read(&args.a).or_fail(FAILED)?, picture::read(&args.b).or_fail(FAILED)?);
     if (a.width, a.height) != (b.width, b.height) {
@@ -29,7 +26,7 @@ pub fn run(args: &DiffArgs) -> Outcome {
         (Some(a), Some(b)) => (" of 255", 255.0 / f64::from(a), 255.0 / f64::from(b)),
         (None, None) => ("", 1.0, 1.0),
         (a, b) => {
-            eprintln!("note: one picture holds integers, the other linear numbers; compared as 0 to 1");
+            tell("note: one picture holds integers, the other linear numbers; compared as 0 to 1");
             ("", 1.0 / f64::from(a.unwrap_or(1)), 1.0 / f64::from(b.unwrap_or(1)))
         }
     };

@@ -3,6 +3,7 @@
 use miette::{
     Diagnostic, LabeledSpan, MietteError, MietteSpanContents, Severity, SourceCode, SourceSpan, SpanContents,
 };
+use snell::scene::is_unprintable;
 use snell_formats::Report;
 use std::fmt;
 
@@ -68,7 +69,7 @@ impl<'a> Excerpt<'a> {
 
 /// Text from a file without the characters that would steer a terminal.
 pub fn plain(text: &str) -> String {
-    text.chars().map(|c| if c.is_control() && c != '\n' && c != '\t' { '\u{fffd}' } else { c }).collect()
+    text.chars().map(|c| if is_unprintable(c) && c != '\n' && c != '\t' { '\u{fffd}' } else { c }).collect()
 }
 
 impl SourceCode for Lines {

@@ -2,23 +2,31 @@
 
 use crate::args::InfoArgs;
 use crate::excerpt::plain;
+use crate::input::{self, what_is};
 use crate::progress::short;
 use crate::recipe::Recipe;
 use crate::say::{self, FAILED, Failure, OrFail, Outcome, SCENE};
+use snell::explain::text::six_digits;
+use snell::geometry::Vec3;
 use snell::scene::Scene;
 use snell::world::World;
+use snell_formats::given::Given;
 use snell_formats::load::Loaded;
-use snell_formats::picture::{self, Format, Picture};
-use snell_formats::{LoadOptions, Report, load};
+use snell_formats::picture::{self, Picture};
+use snell_formats::{LoadOptions, Report};
 use std::fmt::Write;
 use std::path::Path;
 
 pub fn run(args: &InfoArgs) -> Outcome {
-    let path = Path::new(&args.file);
-    if path.is_file() && Format::of(path).is_ok() {
-        return about_picture(&picture::read(path).or_fail(FAILED)?, args);
+    match what_is(&args.file) {
+        Given::Picture(_) => return about_picture(&picture::read(Path::new(&args.file)).or_fail(FAILED)?, args),
+        Given::Foreign(what, help) => {
+            let report = Report::error(format!("`{}` is {what}, which is not read", args.file));
+            return Err(Failure::new(SCENE, report.help(help)));
+        }
+        _ => {}
     }
-    let loaded = load(&args.file, &LoadOptions::from(&args.reading)).or_fail(SCENE)?;
+    let loaded = input::scene(&args.file, &LoadOptions::from(&args.reading))?;
     if args.scene {
         return say::print(&loaded.source.text);
     }
@@ -63,7 +71,7 @@ fn about_picture(picture: &Picture, args: &InfoArgs) -> Outcome {
     say::print(&plain(&text))
 }
 
-/// More spheres than this are counted, not listed.
+/// More shapes of a kind than this are counted, not listed.
 const SHOWN: usize = 20;
 
 fn about_scene(loaded: &Loaded, world: &World) -> String {
@@ -88,43 +96,81 @@ fn about_scene(loaded: &Loaded, world: &World) -> String {
         (None, Some(fov)) => format!("angle of view {fov} degrees"),
         _ => format!("bounds {:?}", camera.window(render.size)),
     };
-    line("camera", format!("at {:?}, looks at {:?}, {view}", camera.eye, camera.look_at));
+    line(
+        "camera",
+        format!("at {:?}, looks at {:?}, {view}, near {}", camera.eye, camera.look_at, camera.image_plane()),
+    );
     for (i, light) in lights.iter().enumerate() {
         let place = match (light.position, light.direction) {
             (Some(p), _) => format!("at {p:?}"),
             (_, Some(d)) => format!("at infinity towards {d:?}"),
             _ => String::new(),
         };
-        let title = light.name.clone().unwrap_or_else(|| (i + 1).to_string());
+        let title = light.name.clone().unwrap_or_else(|| format!("light {}", i + 1));
         line("light", format!("{title}: {place}, {:?}", light.color.to_array()));
     }
     for (name, m) in materials {
         let [ka, kd, ks, kr, ko] = [m.ka, m.kd, m.ks, m.kr, m.ko]
             .map(|c| if c.r == c.g && c.g == c.b { c.r.to_string() } else { format!("{:?}", c.to_array()) });
-        line("material", format!("{name}: ka {ka} kd {kd} ks {ks} kr {kr} ko {ko} spow {} eta {}", m.spow, m.eta));
+        let eta = m.glass.as_ref().map_or_else(|| format!("eta {}", m.eta), |glass| format!("glass {glass}"));
+        line("material", format!("{name}: ka {ka} kd {kd} ks {ks} kr {kr} ko {ko} spow {} {eta}", m.spow));
     }
-    for sphere in spheres.iter().take(SHOWN) {
-        let title = sphere.name.as_deref().unwrap_or("sphere");
-        line("sphere", format!("{title}: at {:?}, radius {}, {}", sphere.center, sphere.radius, sphere.material));
-    }
-    if spheres.len() > SHOWN {
-        line("", format!("… and {} more spheres", spheres.len() - SHOWN));
-    }
-    for (mesh, path) in meshes.iter().zip(&loaded.mesh_paths) {
-        let faces = mesh.geometry.as_ref().map_or(mesh.faces.len(), |g| g.faces.len());
-        let title = path.as_ref().map_or("written out".to_owned(), |p| p.display().to_string());
-        line("mesh", format!("{title}: {faces} triangles"));
-    }
-    for (kind, count) in [("plane", planes.len()), ("box", boxes.len()), ("lathe", lathes.len())] {
-        if count > 0 {
-            line(kind, count.to_string());
+    let mut list = |kind: &str, count: usize, of: &dyn Fn(usize) -> (Option<String>, String)| {
+        for number in 0..count.min(SHOWN) {
+            let (name, what) = of(number);
+            // What has no name is called by its number, here as in explanations.
+            line(kind, format!("{}: {what}", name.unwrap_or_else(|| format!("{kind} {}", number + 1))));
         }
-    }
+        if count > SHOWN {
+            line("", format!("… and {} more of kind `{kind}`", count - SHOWN));
+        }
+    };
+    list("sphere", spheres.len(), &|i| {
+        let sphere = &spheres[i];
+        let what = format!("at {:?}, radius {}, {}", sphere.center, sphere.radius, sphere.material);
+        (sphere.name.clone(), what + &places(sphere.instances.len()))
+    });
+    list("mesh", meshes.len(), &|i| {
+        let (mesh, path) = (&meshes[i], &loaded.mesh_paths[i]);
+        let faces = mesh.geometry.as_ref().map_or(mesh.faces.len(), |g| g.faces.len());
+        let from = path.as_ref().map_or("written out".to_owned(), |p| p.display().to_string());
+        let name = mesh.name.clone().or_else(|| mesh.file.clone());
+        (name, format!("{faces} triangles, {from}{}", places(mesh.instances.len())))
+    });
+    list("plane", planes.len(), &|i| {
+        let plane = &planes[i];
+        let what =
+            format!("at {:?}, normal {:?}, size {:?}, {}", plane.center, plane.normal, plane.size, plane.material);
+        (plane.name.clone(), what + &places(plane.instances.len()))
+    });
+    list("box", boxes.len(), &|i| {
+        let cuboid = &boxes[i];
+        let what = format!("from {:?} to {:?}, {}", cuboid.min, cuboid.max, cuboid.material);
+        (cuboid.name.clone(), what + &places(cuboid.instances.len()))
+    });
+    list("lathe", lathes.len(), &|i| {
+        let lathe = &lathes[i];
+        let what = format!("{} points, {} segments, {}", lathe.profile.len(), lathe.segments, lathe.material);
+        (lathe.name.clone(), what + &places(lathe.instances.len()))
+    });
     let memory = short(world.memory() as f64);
+    let bounds = world.bounds();
+    let at = |p: Vec3| format!("({})", [p.x, p.y, p.z].map(six_digits).join(", "));
+    let extent = if world.primitive_count() == 0 {
+        "empty".to_owned()
+    } else {
+        format!("{} to {}", at(bounds.min), at(bounds.max))
+    };
+    line("bounds", extent);
     line("world", format!("{} primitives, {memory}B", world.primitive_count()));
     let tree = world.tree();
     let [boxes, primitives] = [tree.node_bytes, tree.primitive_bytes].map(|bytes| short(bytes as f64));
     let counts = format!("{} nodes, {} leaves, depth {}", tree.nodes, tree.leaves, tree.depth);
     line("tree", format!("{counts}, {boxes}B of boxes, {primitives}B of primitives"));
     text
+}
+
+/// In how many places a shape stands, if it is not one.
+fn places(instances: usize) -> String {
+    if instances == 0 { String::new() } else { format!(", in {instances} places") }
 }

@@ -1,7 +1,5 @@
 //! The `snell` command: a thin face on the library. It holds no physics.
 
-#![allow(clippy::print_stdout, clippy::print_stderr, reason = "this is the program that talks to people")]
-
 mod args;
 mod check;
 mod convert;
@@ -9,22 +7,54 @@ mod diff;
 mod excerpt;
 mod explain;
 mod info;
+mod input;
+mod output;
 mod paths;
 mod progress;
 mod recipe;
 mod render;
 mod say;
 mod scenes;
+mod signals;
 mod solid_text;
 
 use args::{Arguments, Command};
 use clap::{CommandFactory, Parser};
-use say::Failure;
+use excerpt::plain;
+use say::{Failure, Outcome, USAGE};
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let arguments = Arguments::parse();
-    let result = match arguments.command {
+    signals::end_with_an_error_instead_of_abort();
+    let result = match Arguments::try_parse() {
+        Ok(arguments) => run(arguments.command),
+        Err(answer) => answer_with(&answer),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(Failure { code, reports }) => {
+            say::reports(&reports);
+            ExitCode::from(code)
+        }
+    }
+}
+
+/// Help and version, or what is wrong with what was typed.
+fn answer_with(answer: &clap::Error) -> Outcome {
+    // What was typed stands in the answer as it is, and may steer a terminal: it is asked again without that.
+    let typed = std::env::args_os().map(|argument| plain(&argument.to_string_lossy()));
+    let again = Arguments::try_parse_from(typed).err().filter(|again| again.kind() == answer.kind());
+    let text = again.as_ref().unwrap_or(answer).render();
+    let styled = |stream: &dyn Fn() -> bool| if stream() { text.ansi().to_string() } else { text.to_string() };
+    if answer.use_stderr() {
+        say::tell(styled(&|| say::colored(&std::io::stderr())).trim_end());
+        return Err(Failure { code: USAGE, reports: Vec::new() });
+    }
+    say::print(&styled(&|| say::colored(&std::io::stdout())))
+}
+
+fn run(command: Command) -> Outcome {
+    match command {
         Command::Render(args) => render::run(&args),
         Command::Explain(args) => explain::run(&args),
         Command::Info(args) => info::run(&args),
@@ -37,13 +67,6 @@ fn main() -> ExitCode {
             let mut script = Vec::new();
             clap_complete::generate(shell, &mut Arguments::command(), "snell", &mut script);
             say::print(&String::from_utf8_lossy(&script))
-        }
-    };
-    match result {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(Failure { code, reports }) => {
-            say::reports(&reports);
-            ExitCode::from(code)
         }
     }
 }

@@ -1,46 +1,57 @@
 //! `snell render --paths` and `--only`: a picture by the ways of its light.
 
 use crate::args::{ProgressKind, RenderArgs};
+use crate::output;
 use crate::progress::Reporter;
-use crate::say::{FAILED, Failure, OrFail, Outcome, USAGE};
+use crate::recipe::Recipe;
+use crate::render::same_film;
+use crate::say::{FAILED, Failure, Outcome, USAGE, tell};
 use snell::explain::{Path as Way, layers, only};
 use snell::film::transfer::Encoding;
 use snell::film::{Crop, Film, Rgb};
 use snell::render::Options;
 use snell::world::World;
-use snell_formats::Report;
 use snell_formats::load::Loaded;
-use snell_formats::picture::{self, Format, write_layers};
+use snell_formats::picture::{self, Format};
+use snell_formats::report::known_names;
+use snell_formats::{Report, disk};
 use std::path::Path;
 
 /// Renders one layer for each of the strongest ways, or one way only.
-pub fn run(world: &World, loaded: &Loaded, args: &RenderArgs, output: &Path) -> Outcome {
-    if args.crop.is_some() {
+pub fn run(
+    world: &World,
+    loaded: &Loaded,
+    mut recipe: Recipe,
+    args: &RenderArgs,
+    output: &Path,
+    format: Format,
+) -> Outcome {
+    if recipe.crop.is_some() {
         let report = Report::error("--paths and --only look at whole pictures");
         return Err(Failure::new(USAGE, report.help("leave out --crop, or choose a smaller --size")));
+    }
+    let way = recipe.only.as_ref().map(|text| way(text, world)).transpose()?;
+    if way.is_none() && format != Format::Exr {
+        let report = Report::error("only EXR pictures have layers").help("name one, like -o paths.exr");
+        return Err(Failure::new(USAGE, report));
     }
     let [width, height] = world.camera.size;
     let reporter = Reporter::new(args.progress, args.quiet, "ways of light");
     let update = |progress| reporter.update(progress);
     let options = Options { threads: args.threads.into(), progress: Some(&update), ..Options::default() };
-    if let Some(text) = &args.only {
-        let way = Way::parse(text).map_err(|e| {
-            let help = "like --only \"glass(refract) green\"; snell render --paths 20 lists the ways of a picture";
-            Failure::new(USAGE, Report::error(e.to_string()).help(help))
-        })?;
+    let before = recipe.film_sha256.take();
+    if let Some(way) = way {
         let pixels = only(world, &loaded.scene, &way, &options).unwrap_or_default();
         reporter.finish();
         let seen = pixels.iter().filter(|pixel| **pixel != Rgb::gray(0.0)).count();
-        say(args, &format!("{}: {way}, in {seen} of {} pixels", output.display(), pixels.len()));
+        say(args, &format!("{}: {way}, in {seen} of {} pixels", output::shown(output), pixels.len()));
         let film = film([width, height], pixels)?;
         let encoding = Encoding { transfer: world.render.transfer, rounding: world.render.rounding };
-        return picture::write(output, Format::of(output).or_fail(USAGE)?, &film, encoding, None).or_fail(FAILED);
+        let text = remembered(&mut recipe, &film);
+        output::write(output, |out| picture::write_to(out, format, &film, encoding, Some(&text)))?;
+        return same_film(before.as_deref(), &recipe);
     }
-    let most = args.paths.unwrap_or_default() as usize;
-    if Format::of(output).or_fail(USAGE)? != Format::Exr {
-        let report = Report::error("only EXR pictures have layers").help("name one, like -o paths.exr");
-        return Err(Failure::new(USAGE, report));
-    }
+    let most = recipe.paths.unwrap_or_default() as usize;
     let split = layers(world, &loaded.scene, most, &options).unwrap_or_default();
     reporter.finish();
     let total: f64 = split.picture.iter().map(|c| c.mean()).sum();
@@ -53,14 +64,41 @@ pub fn run(world: &World, loaded: &Loaded, args: &RenderArgs, output: &Path) -> 
         let share: f64 = pixels.iter().map(|c| c.mean()).sum();
         say(args, &format!("{:5.1} %  {name}", 100.0 * share / total));
     }
-    write_layers(output, [width, height], &split.picture, &named).or_fail(FAILED)?;
-    say(args, &format!("{}: {} layers that add up to the picture", output.display(), named.len()));
-    Ok(())
+    let whole = film([width, height], split.picture)?;
+    let text = remembered(&mut recipe, &whole);
+    output::write(output, |out| picture::write_layers_to(out, [width, height], &whole.pixels, &named, Some(&text)))?;
+    say(args, &format!("{}: {} layers that add up to the picture", output::shown(output), named.len()));
+    same_film(before.as_deref(), &recipe)
+}
+
+/// What the file remembers.
+fn remembered(recipe: &mut Recipe, film: &Film) -> String {
+    recipe.film_sha256 = Some(disk::sha256(film.bytes()));
+    serde_json::to_string(recipe).unwrap_or_default()
+}
+
+/// The way that a text names, if all of its objects are there.
+fn way(text: &str, world: &World) -> Result<Way, Failure> {
+    let way = Way::parse(text).map_err(|e| {
+        let help =
+            "like --only \"glass(refract) green\"; snell render --paths 20 -o paths.exr lists the ways of a picture";
+        Failure::new(USAGE, Report::error(e.to_string()).help(help))
+    })?;
+    let known = world.object_names();
+    let steps = way.legs.iter().map(|leg| leg.object.as_str());
+    let ends = std::iter::once(way.end.as_str()).filter(|end| *end != snell::explain::SKY);
+    match steps.chain(ends).find(|name| !known.contains(name)) {
+        None => Ok(way),
+        Some(name) => {
+            let report = Report::error(format!("no object is called `{name}`"));
+            Err(Failure::new(USAGE, report.help(known_names(name, known))))
+        }
+    }
 }
 
 fn say(args: &RenderArgs, text: &str) {
     if !args.quiet && args.progress == ProgressKind::Auto {
-        eprintln!("{text}");
+        tell(&crate::excerpt::plain(text));
     }
 }
 

@@ -1,7 +1,8 @@
 //! Showing what goes on and how far it is: a bar for people, lines of JSON for programs.
 
 use crate::args::ProgressKind;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use crate::say::tell;
+use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::json;
 use snell::render::Progress;
 use std::io::IsTerminal;
@@ -31,7 +32,7 @@ impl Reporter {
                 // Hidden by itself where stderr is no terminal.
                 let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr_with_hz(10));
                 let colors = if crate::say::colored(&std::io::stderr()) { ".yellow/dim" } else { "" };
-                let template = format!("{{prefix}} {{bar:40{colors}}} {{percent:>3}} %  {{msg}}  {{eta}} left");
+                let template = format!("{{prefix}} {{bar:40{colors}}} {{percent:>3}} %  {{msg}}");
                 if let Ok(style) = ProgressStyle::with_template(&template) {
                     bar.set_style(style.progress_chars("━╸─"));
                 }
@@ -49,23 +50,21 @@ impl Reporter {
             Self::Bar(bar) => {
                 bar.set_length(progress.total_pixels);
                 bar.set_position(progress.pixels);
-                let seconds = bar.elapsed().as_secs_f64();
-                if progress.rays > 0 {
-                    bar.set_message(format!("{} rays/s", short(progress.rays as f64 / seconds.max(1e-9))));
-                }
+                let elapsed = bar.elapsed();
+                let rate = short(progress.rays as f64 / elapsed.as_secs_f64().max(1e-9));
+                bar.set_message(format!("{rate} rays/s  {} left", HumanDuration(left(elapsed, &progress))));
             }
             Self::Json { started, last } => {
                 let Ok(mut last) = last.lock() else { return };
                 if last.is_none_or(|at| at.elapsed() >= JSON_INTERVAL) {
                     *last = Some(Instant::now());
                     let Progress { pixels, total_pixels, rays } = progress;
-                    eprintln!(
-                        "{}",
-                        json!({
-                            "event": "progress", "pixels": pixels, "total_pixels": total_pixels, "rays": rays,
-                            "seconds": started.elapsed().as_secs_f64(),
-                        })
-                    );
+                    let elapsed = started.elapsed();
+                    let event = json!({
+                        "event": "progress", "pixels": pixels, "total_pixels": total_pixels, "rays": rays,
+                        "seconds": elapsed.as_secs_f64(), "left": left(elapsed, &progress).as_secs_f64(),
+                    });
+                    tell(&event.to_string());
                 }
             }
         }
@@ -78,6 +77,13 @@ impl Reporter {
     }
 }
 
+/// How long the rest takes, if its pixels are like those that are finished; the renderer spreads these over the picture.
+fn left(elapsed: Duration, progress: &Progress) -> Duration {
+    let Progress { pixels, total_pixels, .. } = *progress;
+    let rest = total_pixels.saturating_sub(pixels) as f64 / pixels.max(1) as f64;
+    Duration::try_from_secs_f64(elapsed.as_secs_f64() * rest).unwrap_or(Duration::MAX)
+}
+
 /// Says what goes on besides tracing (reading, preparing, writing) while it lasts, if it lasts longer than a moment.
 pub struct Phase {
     /// Dropped at the end, which ends the thread.
@@ -88,12 +94,12 @@ pub struct Phase {
 impl Phase {
     pub fn start(kind: ProgressKind, quiet: bool, what: &'static str, name: &str) -> Self {
         match kind {
-            ProgressKind::Json => eprintln!("{}", json!({ "event": what, "name": name })),
+            ProgressKind::Json => tell(&json!({ "event": what, "name": name }).to_string()),
             ProgressKind::Auto if quiet || !std::io::stderr().is_terminal() => {}
             ProgressKind::Auto => {
                 let (over, is_over) = channel::<()>();
                 let text = format!("{what} {}", crate::excerpt::plain(name));
-                let thread = std::thread::spawn(move || {
+                let draw = move || {
                     let wait = |time| is_over.recv_timeout(time) == Err(RecvTimeoutError::Timeout);
                     if wait(BAR_DELAY) {
                         let spinner = ProgressBar::new_spinner().with_message(text);
@@ -102,8 +108,10 @@ impl Phase {
                         }
                         spinner.finish_and_clear();
                     }
-                });
-                return Self { over: Some(over), thread: Some(thread) };
+                };
+                // Where no thread is to be had, nothing is drawn.
+                let thread = std::thread::Builder::new().spawn(draw).ok();
+                return Self { over: Some(over), thread };
             }
         }
         Self { over: None, thread: None }

@@ -1,14 +1,15 @@
 //! Everything that decides the bits of a picture, and that a PNG or EXR remembers.
 
-use crate::args::RenderArgs;
-use crate::say::{Failure, OrFail, SCENE};
+use crate::args::{ExplainArgs, ReadingArgs, RenderArgs};
+use crate::input;
+use crate::say::{FAILED, Failure, OrFail, SCENE};
 use serde::{Deserialize, Serialize};
 use snell::explain::text::six_digits;
 use snell::film::Crop;
 use snell::scene::{Integrator, Rounding, Scene, Shadows, Transfer};
 use snell_formats::driver::Dialect;
 use snell_formats::load::{Kind, Loaded, ModelFile, load_text};
-use snell_formats::{LoadOptions, Report, Source, load};
+use snell_formats::{LoadOptions, Report, Source, picture};
 use std::path::{Path, PathBuf};
 
 /// How a picture is made: the text of its scene and all settings besides. Once rendered, those that the text may leave out are
@@ -58,6 +59,12 @@ pub struct Recipe {
     /// Bits per channel of a PNG, 8 if left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bits: Option<u8>,
+    /// Layers for so many ways of light.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub paths: Option<u32>,
+    /// Only the light of this way.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub only: Option<String>,
     /// Folders in which models were looked for first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub search: Vec<PathBuf>,
@@ -69,39 +76,93 @@ pub struct Recipe {
     pub film_sha256: Option<String>,
 }
 
+/// What a command line asks to be other than in a scene, or in a recipe.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Changes {
+    pub set: Vec<String>,
+    pub size: Option<[u32; 2]>,
+    pub stretch: bool,
+    pub crop: Option<Crop>,
+    pub spp: Option<u32>,
+    pub depth: Option<u32>,
+    pub integrator: Option<Integrator>,
+    pub shadows: Option<Shadows>,
+    pub transfer: Option<Transfer>,
+    pub rounding: Option<Rounding>,
+    pub bits: Option<u8>,
+    pub paths: Option<u32>,
+    pub only: Option<String>,
+}
+
+impl From<&RenderArgs> for Changes {
+    fn from(args: &RenderArgs) -> Self {
+        Self {
+            set: args.reading.set.clone(),
+            size: args.size,
+            stretch: args.stretch,
+            crop: args.crop,
+            spp: args.spp,
+            depth: args.depth,
+            integrator: args.integrator,
+            shadows: args.shadows,
+            transfer: args.transfer,
+            rounding: args.rounding,
+            bits: args.bits,
+            paths: args.paths,
+            only: args.only.clone(),
+        }
+    }
+}
+
+impl From<&ExplainArgs> for Changes {
+    fn from(args: &ExplainArgs) -> Self {
+        Self {
+            set: args.reading.set.clone(),
+            size: args.size,
+            spp: args.spp,
+            integrator: args.integrator,
+            shadows: args.shadows,
+            ..Self::default()
+        }
+    }
+}
+
 impl Recipe {
-    /// Reads a scene and notes how it was read.
-    pub fn of(name: &str, args: &RenderArgs) -> Result<(Self, Loaded), Failure> {
-        let options = LoadOptions::from(&args.reading);
-        let loaded = load(name, &options).or_fail(SCENE)?;
+    /// Reads a scene, as a command line asks for it, and notes how it was read.
+    pub fn of(name: &str, reading: &ReadingArgs, changes: &Changes) -> Result<(Self, Loaded), Failure> {
+        let options =
+            LoadOptions { set: changes.set.clone(), integrator: changes.integrator, ..LoadOptions::from(reading) };
+        let loaded = input::scene(name, &options)?;
         // Only models need it; otherwise a picture need not tell where it was made.
         let (folder, search) = if loaded.models.is_empty() {
             (PathBuf::from("."), Vec::new())
         } else {
             (absolute(&loaded.folder), options.search.iter().map(|folder| absolute(folder)).collect())
         };
-        let recipe = Self {
+        let mut recipe = Self {
             snell: env!("CARGO_PKG_VERSION").to_owned(),
-            name: name.to_owned(),
+            name: if loaded.path.is_some() { name.to_owned() } else { loaded.source.name.to_string() },
             kind: loaded.kind,
             text: loaded.source.text.to_string(),
             folder,
-            dialect: args.reading.dialect.map(|d| d.name().to_owned()),
-            set: args.reading.set.clone(),
-            size: args.size,
-            stretch: args.stretch,
-            crop: args.crop,
-            spp: args.spp,
+            dialect: reading.dialect.map(|d| d.name().to_owned()),
+            set: Vec::new(),
+            size: None,
+            stretch: false,
+            crop: None,
+            spp: None,
             seed: None,
-            depth: args.depth,
+            depth: None,
             min_throughput: None,
             bands: None,
-            integrator: args.integrator,
-            shadows: args.shadows,
+            integrator: None,
+            shadows: None,
             near: None,
-            transfer: args.transfer,
-            rounding: args.rounding,
-            bits: args.bits,
+            transfer: None,
+            rounding: None,
+            bits: None,
+            paths: None,
+            only: None,
             search,
             models: loaded
                 .models
@@ -110,7 +171,77 @@ impl Recipe {
                 .collect(),
             film_sha256: None,
         };
+        recipe.change(changes);
         Ok((recipe, loaded))
+    }
+
+    /// What a picture remembers.
+    pub fn in_picture(path: &Path) -> Result<Self, Failure> {
+        let remembered = picture::read(path).or_fail(FAILED)?.recipe.ok_or_else(|| {
+            let report = Report::error(format!("`{}` does not say how it was made", path.display()));
+            Failure::new(FAILED, report.help("only PNG and EXR pictures made by Snell do"))
+        })?;
+        serde_json::from_str(&remembered).map_err(|e| {
+            Failure::new(FAILED, Report::error(format!("the recipe in `{}` cannot be read: {e}", path.display())))
+        })
+    }
+
+    /// Takes over what is asked to be other than it was.
+    pub fn change(&mut self, changes: &Changes) {
+        let of_the_file = Changes { transfer: None, rounding: None, bits: None, ..changes.clone() };
+        if of_the_file != Changes::default() {
+            // The film will be another one.
+            self.film_sha256 = None;
+        }
+        for change in &changes.set {
+            self.forget(change);
+            self.set.push(change.clone());
+        }
+        if changes.size.is_some() {
+            // A part of the picture is another part of another one.
+            (self.size, self.stretch, self.crop) = (changes.size, changes.stretch, None);
+        }
+        if changes.integrator.is_some() && changes.integrator != self.integrator {
+            // What another model of light did about shadows says nothing here.
+            self.shadows = None;
+        }
+        self.crop = changes.crop.or(self.crop);
+        self.spp = changes.spp.or(self.spp);
+        self.depth = changes.depth.or(self.depth);
+        self.integrator = changes.integrator.or(self.integrator);
+        self.shadows = changes.shadows.or(self.shadows);
+        self.transfer = changes.transfer.or(self.transfer);
+        self.rounding = changes.rounding.or(self.rounding);
+        self.bits = changes.bits.or(self.bits);
+        if changes.paths.is_some() || changes.only.is_some() {
+            (self.paths, self.only) = (changes.paths, changes.only.clone());
+        }
+    }
+
+    /// Lets a change of the scene decide what the recipe remembers of its settings.
+    fn forget(&mut self, change: &str) {
+        let key: String = change.split('=').next().unwrap_or_default().chars().filter(|c| !c.is_whitespace()).collect();
+        let all = key == "render";
+        let is = |name: &str| all || key.starts_with(&format!("render.{name}"));
+        if is("size") {
+            (self.size, self.crop) = (None, None);
+        }
+        if is("integrator") {
+            (self.integrator, self.shadows) = (None, None);
+        }
+        if is("shadows") {
+            self.shadows = None;
+        }
+        if key.starts_with("camera") {
+            self.near = None;
+        }
+        self.spp = self.spp.filter(|_| !is("spp"));
+        self.seed = self.seed.filter(|_| !is("seed"));
+        self.depth = self.depth.filter(|_| !is("max_depth"));
+        self.min_throughput = self.min_throughput.filter(|_| !is("min_throughput"));
+        self.bands = self.bands.filter(|_| !is("bands"));
+        self.transfer = self.transfer.filter(|_| !is("transfer"));
+        self.rounding = self.rounding.filter(|_| !is("rounding"));
     }
 
     /// Reads the scene of a recipe again. Its models must be what they were.
@@ -125,6 +256,7 @@ impl Recipe {
             search: search.iter().chain(&self.search).cloned().collect(),
             dialect,
             set: self.set.clone(),
+            integrator: self.integrator,
         };
         let source = Source::new(self.name.as_str(), self.text.as_str());
         let loaded = load_text(source, self.kind, &self.folder, &options).or_fail(SCENE)?;

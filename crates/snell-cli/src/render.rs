@@ -1,20 +1,27 @@
 //! `snell render`.
 
 use crate::args::{ProgressKind, RenderArgs};
+use crate::excerpt::plain;
+use crate::input::what_is;
+use crate::output::{self, beside, is_standard, refuse_inputs};
 use crate::paths;
 use crate::progress::{Phase, Reporter, short};
-use crate::recipe::Recipe;
-use crate::say::{self, FAILED, Failure, INTERRUPTED, OrFail, Outcome, SCENE, USAGE};
+use crate::recipe::{Changes, Recipe};
+use crate::say::{self, FAILED, Failure, INTERRUPTED, OrFail, Outcome, SCENE, USAGE, tell};
+use crate::signals;
 use serde_json::json;
+use snell::explain::{Names, black_picture};
 use snell::film::transfer::Encoding;
 use snell::film::{BYTES_PER_PIXEL, Crop};
 use snell::render::{Options, RenderError, Rendered, render};
-use snell::scene::WarningCode;
+use snell::scene::{Warning, WarningCode};
 use snell::world::World;
+use snell_formats::given::Given;
 use snell_formats::load::Loaded;
 use snell_formats::picture::{self, Format};
-use snell_formats::{Report, disk};
+use snell_formats::{Report, disk, memory};
 use std::collections::HashMap;
+use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
@@ -24,13 +31,14 @@ static CANCEL: AtomicBool = AtomicBool::new(false);
 /// Is there a part of a picture to save? Before, ^C ends the program at once.
 static RENDERING: AtomicBool = AtomicBool::new(false);
 
-/// The first ^C stops the render and saves what is done; before a render, or the second time, it ends at once.
+/// The first ^C stops the render and saves what is done; before a render, the second time, or while a pipe has no reader, it ends
+/// at once.
 fn interrupt() {
-    let something_to_save = RENDERING.load(Ordering::Relaxed);
+    let something_to_save = RENDERING.load(Ordering::Relaxed) && !disk::is_waiting();
     if !something_to_save || CANCEL.swap(true, Ordering::Relaxed) {
         disk::discard_pending();
         if !something_to_save {
-            eprintln!("stopped before there was anything to save");
+            tell("stopped before there was anything to save");
         }
         std::process::exit(INTERRUPTED.into());
     }
@@ -41,24 +49,26 @@ pub fn run(args: &RenderArgs) -> Outcome {
         Some(from) => vec![from.display().to_string()],
         None => args.scenes.clone(),
     };
+    if args.from.is_none() {
+        names.iter().try_for_each(|name| refuse_picture(name))?;
+    }
     let outputs = outputs(args, &names)?;
-    if ctrlc::set_handler(interrupt).is_err() {
-        eprintln!("note: ^C cannot be caught here; it would lose the picture");
+    if !signals::on_interrupt(interrupt) {
+        tell("note: ^C cannot be caught here; it would lose the picture");
+    }
+    if names.len() > 1 {
+        keep_all_inputs(args, &names, &outputs)?;
     }
     let mut failures = Vec::new();
     for (name, output) in names.iter().zip(&outputs) {
-        let result = match &args.from {
-            Some(from) => again(from, args, output),
-            None => anew(name, args, output),
-        };
-        match result {
+        match one(name, args, output) {
             Ok(()) => {}
             // One bad scene of many does not keep the others from being drawn.
             Err(failure) if names.len() > 1 && failure.code != INTERRUPTED => {
-                say::reports(&failure.reports);
+                say::reports(&quiet(failure.reports, args));
                 failures.push(failure.code);
             }
-            Err(failure) => return Err(failure),
+            Err(Failure { code, reports }) => return Err(Failure { code, reports: quiet(reports, args) }),
         }
     }
     match failures.first() {
@@ -70,28 +80,46 @@ pub fn run(args: &RenderArgs) -> Outcome {
     }
 }
 
+/// With `--quiet` only the errors.
+fn quiet(mut reports: Vec<Report>, args: &RenderArgs) -> Vec<Report> {
+    reports.retain(|report| report.warning.is_none() || !args.quiet);
+    reports
+}
+
 /// Where each picture goes. What is sure to fail later fails here, before any work is done.
 fn outputs(args: &RenderArgs, names: &[String]) -> Result<Vec<PathBuf>, Failure> {
     let ends_with_slash = |p: &Path| p.as_os_str().to_string_lossy().ends_with(['/', '\\']);
+    let is_picture = |p: &Path| is_standard(p) || Format::of(p).is_ok();
     let outputs = match &args.output {
-        Some(path) if !path.is_dir() && !ends_with_slash(path) && (names.len() == 1 || Format::of(path).is_ok()) => {
-            Format::of(path).or_fail(USAGE)?;
+        Some(path) if !path.is_dir() && !ends_with_slash(path) && (names.len() == 1 || is_picture(path)) => {
+            let format = format(path, args)?;
             if names.len() > 1 {
-                let message = format!("{} scenes cannot be one picture `{}`", names.len(), path.display());
+                let message = format!("{} scenes cannot be one picture `{}`", names.len(), output::shown(path));
                 return Err(Failure::new(USAGE, Report::error(message).help("name a folder, like -o out/")));
+            }
+            if is_standard(path) && format != (Format::Ppm { binary: false }) && std::io::stdout().is_terminal() {
+                let report = Report::error("a picture would fill the terminal with unreadable bytes");
+                return Err(Failure::new(USAGE, report.help("send it on: snell render … -o - > picture.png")));
             }
             vec![path.clone()]
         }
         folder => in_folder(folder.as_deref().unwrap_or(Path::new(".")), args, names)?,
     };
-    for output in &outputs {
-        if names.iter().any(|name| same_file(Path::new(name), output)) {
-            let message = format!("`{}` is what is read", output.display());
-            return Err(Failure::new(USAGE, Report::error(message).help("give the new picture another name")));
-        }
+    for output in outputs.iter().filter(|output| !is_standard(output)) {
+        refuse_inputs(output, names.iter().map(Path::new))?;
         disk::check_writable(output).or_fail(FAILED)?;
     }
     Ok(outputs)
+}
+
+/// Which format a picture gets.
+fn format(output: &Path, args: &RenderArgs) -> Result<Format, Failure> {
+    let name = PathBuf::from(format!("picture.{}", args.format));
+    Ok(match Format::of(if is_standard(output) { &name } else { output }).or_fail(USAGE)? {
+        Format::Png { .. } => Format::Png { sixteen_bit: args.bits == Some(16) },
+        Format::Ppm { .. } => Format::Ppm { binary: args.binary },
+        other => other,
+    })
 }
 
 /// A picture for each scene in a folder, which is made if need be.
@@ -103,13 +131,8 @@ fn in_folder(folder: &Path, args: &RenderArgs, names: &[String]) -> Result<Vec<P
     let mut taken: HashMap<PathBuf, &String> = HashMap::new();
     let mut outputs = Vec::new();
     for name in names {
-        // Only an ending that scene files have is cut off: `eta-1.05` is a whole name.
-        let path = Path::new(name);
-        let known = path.extension().is_some_and(|e| ["txt", "toml", "json", "png", "exr"].iter().any(|k| e == *k));
-        let stem = if known { path.file_stem() } else { path.file_name() };
-        let stem = stem.map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
         let again = if args.from.is_some() { "-again" } else { "" };
-        let output = folder.join(format!("{stem}{again}.{}", args.format));
+        let output = folder.join(format!("{}{again}.{}", stem(name), args.format));
         if let Some(other) = taken.insert(output.clone(), name) {
             let message = format!("`{other}` and `{name}` would both be written to `{}`", output.display());
             return Err(Failure::new(USAGE, Report::error(message).help("render them with two commands")));
@@ -119,42 +142,70 @@ fn in_folder(folder: &Path, args: &RenderArgs, names: &[String]) -> Result<Vec<P
     Ok(outputs)
 }
 
-/// Are these two names of one file?
-pub fn same_file(a: &Path, b: &Path) -> bool {
-    matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
-}
+/// Endings of what is rendered.
+const ENDINGS: &[&str] = &["txt", "toml", "json", "nff", "png", "exr"];
 
-/// Renders a picture of a scene.
-fn anew(name: &str, args: &RenderArgs, output: &Path) -> Outcome {
-    let reading = Phase::start(args.progress, args.quiet, "reading", name);
-    let read = Recipe::of(name, args);
-    drop(reading);
-    let (recipe, loaded) = read?;
-    one(recipe, loaded, args, output)
-}
-
-/// Renders a picture from what another one remembers.
-fn again(from: &Path, args: &RenderArgs, output: &Path) -> Outcome {
-    let remembered = picture::read(from).or_fail(FAILED)?.recipe.ok_or_else(|| {
-        let report = Report::error(format!("`{}` does not say how it was made", from.display()));
-        Failure::new(FAILED, report.help("only PNG and EXR pictures made by Snell do"))
-    })?;
-    let mut recipe: Recipe = serde_json::from_str(&remembered).map_err(|e| {
-        Failure::new(FAILED, Report::error(format!("the recipe in `{}` cannot be read: {e}", from.display())))
-    })?;
-    let loaded = recipe.load(&args.reading.search)?;
-    for note in recipe.keep_old_defaults(&loaded.scene) {
-        match args.progress {
-            ProgressKind::Json => eprintln!("{}", json!({ "event": "note", "message": note })),
-            ProgressKind::Auto if args.quiet => {}
-            ProgressKind::Auto => eprintln!("note: {note}"),
-        }
+/// The name of a scene without its folder and its ending. Only an ending that scene files have is cut off: `eta-1.05` is a whole
+/// name.
+fn stem(name: &str) -> String {
+    if name == output::STANDARD {
+        return "picture".to_owned();
     }
-    one(recipe, loaded, args, output)
+    let path = Path::new(name);
+    let known = path.extension().is_some_and(|e| ENDINGS.iter().any(|ending| e.eq_ignore_ascii_case(ending)));
+    let stem = if known { path.file_stem() } else { path.file_name() };
+    stem.unwrap_or_default().to_string_lossy().into_owned()
+}
+
+/// Refuses outputs that another scene of many would read only after they were written. Only a file that is there can be one.
+fn keep_all_inputs(args: &RenderArgs, names: &[String], outputs: &[PathBuf]) -> Outcome {
+    let there: Vec<&PathBuf> = outputs.iter().filter(|output| output.exists()).collect();
+    if there.is_empty() {
+        return Ok(());
+    }
+    for name in names.iter().filter(|name| *name != output::STANDARD) {
+        // What cannot be read is told when it is its turn.
+        let Ok((_, loaded)) = Recipe::of(name, &args.reading, &Changes::from(args)) else { continue };
+        there.iter().try_for_each(|output| refuse_inputs(output, loaded.files()))?;
+    }
+    Ok(())
+}
+
+/// Reads what is to be rendered, and how.
+fn read(name: &str, args: &RenderArgs) -> Result<(Recipe, Loaded), Failure> {
+    let changes = Changes::from(args);
+    if let Some(from) = &args.from {
+        let mut recipe = Recipe::in_picture(from)?;
+        recipe.change(&changes);
+        let loaded = recipe.load(&args.reading.search)?;
+        for note in recipe.keep_old_defaults(&loaded.scene) {
+            match args.progress {
+                ProgressKind::Json => tell(&json!({ "event": "note", "message": note }).to_string()),
+                ProgressKind::Auto if args.quiet => {}
+                ProgressKind::Auto => tell(&format!("note: {note}")),
+            }
+        }
+        return Ok((recipe, loaded));
+    }
+    Recipe::of(name, &args.reading, &changes)
+}
+
+/// A picture knows its scene, but whoever gives one instead of a scene may not mean that.
+fn refuse_picture(name: &str) -> Outcome {
+    let Given::Picture(what) = what_is(name) else { return Ok(()) };
+    let report = Report::error(format!("`{name}` is {what}, not a scene"));
+    let help = format!("to make it again, with changes or without: snell render --from {name}");
+    Err(Failure::new(SCENE, report.help(help)))
 }
 
 /// Renders one picture.
-fn one(mut recipe: Recipe, mut loaded: Loaded, args: &RenderArgs, output: &Path) -> Outcome {
+fn one(name: &str, args: &RenderArgs, output: &Path) -> Outcome {
+    let reading = Phase::start(args.progress, args.quiet, "reading", name);
+    let read = read(name, args);
+    drop(reading);
+    let (mut recipe, mut loaded) = read?;
+    // A scene that a picture remembers is not read again, but is somebody's work all the same.
+    refuse_inputs(output, loaded.files().chain([Path::new(&recipe.name)]))?;
     let widened = recipe.apply(&mut loaded.scene);
     recipe.resolve(&loaded.scene);
     let preparing = Phase::start(args.progress, args.quiet, "preparing", &recipe.name);
@@ -162,20 +213,21 @@ fn one(mut recipe: Recipe, mut loaded: Loaded, args: &RenderArgs, output: &Path)
     drop(preparing);
     let widened = widened.map(|note| Report::warning(WarningCode::WidenedBounds, note));
     let warnings: Vec<Report> = widened.into_iter().chain(loaded.warnings_with(&world)).collect();
-    for warning in warnings.iter().take(say::SHOWN) {
-        warn(warning, args);
-    }
-    if !args.quiet && args.progress == ProgressKind::Auto {
-        say::more(warnings.len());
-    }
+    warn(&warnings, args);
+    let format = format(output, args)?;
+    let format = if format == (Format::Png { sixteen_bit: false }) {
+        Format::Png { sixteen_bit: recipe.bits == Some(16) }
+    } else {
+        format
+    };
     enough_memory(&world, recipe.crop)?;
-    if Format::of(output).or_fail(USAGE)? == Format::Exr && world.camera.size.iter().any(|&n| n > i32::MAX as u32) {
+    if format == Format::Exr && world.camera.size.iter().any(|&n| n > i32::MAX as u32) {
         let report = Report::error("an EXR picture has at most 2147483647 pixels in a row or column");
         return Err(Failure::new(USAGE, report));
     }
 
-    if args.paths.is_some() || args.only.is_some() {
-        return paths::run(&world, &loaded, args, output);
+    if recipe.paths.is_some() || recipe.only.is_some() {
+        return paths::run(&world, &loaded, recipe, args, output, format);
     }
     let reporter = Reporter::new(args.progress, args.quiet, &recipe.name);
     let started = Instant::now();
@@ -202,30 +254,42 @@ fn one(mut recipe: Recipe, mut loaded: Loaded, args: &RenderArgs, output: &Path)
         return Err(Failure { code: INTERRUPTED, reports: Vec::new() });
     }
 
-    let writing = Phase::start(args.progress, args.quiet, "writing", &output.display().to_string());
     let finished = rendered.film.is_finished();
+    let unfinished;
+    let mut output = output;
+    if !finished && !is_standard(output) && output.is_file() {
+        // What is there may have taken hours.
+        unfinished = beside(output);
+        output = &unfinished;
+    }
+    let writing = Phase::start(args.progress, args.quiet, "writing", &output::shown(output));
     let before = recipe.film_sha256.take();
     if finished {
         recipe.film_sha256 = Some(disk::sha256(rendered.film.bytes()));
     }
-    let format = match Format::of(output).or_fail(USAGE)? {
-        Format::Png { .. } => Format::Png { sixteen_bit: recipe.bits == Some(16) },
-        Format::Ppm { .. } => Format::Ppm { binary: args.binary },
-        other => other,
-    };
     let encoding = Encoding { transfer: world.render.transfer, rounding: world.render.rounding };
     let text = serde_json::to_string(&recipe).unwrap_or_default();
-    let written = picture::write(output, format, &rendered.film, encoding, Some(&text));
+    let written = output::write(output, |out| picture::write_to(out, format, &rendered.film, encoding, Some(&text)));
     RENDERING.store(false, Ordering::Relaxed);
     drop(writing);
-    if let Err(report) = written {
-        return Err(Failure::new(FAILED, rescue(report, output, format, &rendered, encoding, &text)));
+    if let Err(Failure { code, mut reports }) = written {
+        if let Some(report) = reports.pop() {
+            reports.push(rescue(report, output, format, &rendered, encoding, &text));
+        }
+        return Err(Failure { code, reports });
     }
-    summary(&recipe, &world, &rendered, args, &options, output, seconds);
+    let mut odd = rendered.statistics.warnings(&world, rendered.film.pixels.len() as u64);
+    odd.extend(black_picture(&Names { world: &world, scene: &loaded.scene }, &rendered.film));
+    summary(&recipe, &world, &rendered, &odd, args, &options, output, seconds);
     if !finished {
         return Err(Failure { code: INTERRUPTED, reports: Vec::new() });
     }
-    if let (Some(before), Some(now)) = (&before, &recipe.film_sha256)
+    same_film(before.as_deref(), &recipe)
+}
+
+/// Fails if a picture that was made again is another one.
+pub fn same_film(before: Option<&str>, recipe: &Recipe) -> Outcome {
+    if let (Some(before), Some(now)) = (before, &recipe.film_sha256)
         && before != now
     {
         let message =
@@ -245,7 +309,14 @@ fn rescue(
     encoding: Encoding,
     recipe: &str,
 ) -> Report {
-    let name = output.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+    let ending = match format {
+        Format::Png { .. } => "png",
+        Format::Ppm { .. } => "ppm",
+        Format::Exr => "exr",
+        Format::Npy => "npy",
+    };
+    let stem = output.file_stem().unwrap_or_default().to_string_lossy();
+    let name = format!("{}.{ending}", if is_standard(output) { "picture" } else { &stem });
     let elsewhere = std::env::temp_dir().join(format!("snell-{}-{name}", std::process::id()));
     match picture::write(&elsewhere, format, &rendered.film, encoding, Some(recipe)) {
         Ok(()) => report.help(format!("the picture is kept as {}", elsewhere.display())),
@@ -258,28 +329,31 @@ fn short_hash(hash: &str) -> &str {
     hash.get(..12).unwrap_or(hash)
 }
 
-fn warn(report: &Report, args: &RenderArgs) {
+/// Says what is odd about a scene.
+fn warn(reports: &[Report], args: &RenderArgs) {
     match args.progress {
         ProgressKind::Json => {
-            let place = report.place.as_ref().map(|(source, range)| {
-                let (line, column) = source.line_column(range.start);
-                json!({ "file": &*source.name, "line": line, "column": column })
-            });
-            eprintln!(
-                "{}",
-                json!({ "event": "warning", "code": report.warning, "message": report.message, "place": place })
-            );
+            for report in reports {
+                let place = report.place.as_ref().map(|(source, range)| {
+                    let (line, column) = source.line_column(range.start);
+                    json!({ "file": &*source.name, "line": line, "column": column })
+                });
+                let (code, message) = (report.warning, &report.message);
+                tell(&json!({ "event": "warning", "code": code, "message": message, "place": place }).to_string());
+            }
         }
         ProgressKind::Auto if args.quiet => {}
-        ProgressKind::Auto => say::report(report),
+        ProgressKind::Auto => say::reports(reports),
     }
 }
 
 /// Says what was done.
+#[expect(clippy::too_many_arguments, reason = "all that there is to say")]
 fn summary(
     recipe: &Recipe,
     world: &World,
     rendered: &Rendered,
+    odd: &[Warning],
     args: &RenderArgs,
     options: &Options<'_>,
     output: &Path,
@@ -292,14 +366,13 @@ fn summary(
     let (worst_x, worst_y) = lost.worst_pixel(world.camera.size[0]);
     let hash = recipe.film_sha256.as_deref();
     if args.progress == ProgressKind::Json {
-        for warning in statistics.warnings(world, pixels) {
+        for warning in odd {
             let (code, message) = (warning.code.code(), &warning.message);
-            eprintln!("{}", json!({ "event": "warning", "code": code, "message": message, "place": null }));
+            tell(&json!({ "event": "warning", "code": code, "message": message, "place": null }).to_string());
         }
         let tree = world.tree();
-        eprintln!(
-            "{}",
-            json!({
+        tell(
+            &json!({
                 "event": if hash.is_some() { "done" } else { "interrupted" },
                 "file": output, "width": film.crop.width, "height": film.crop.height, "seconds": seconds,
                 "rays": { "camera": rays.camera, "mirror": rays.mirror, "refracted": rays.refracted, "shadow": rays.shadow },
@@ -311,6 +384,7 @@ fn summary(
                 },
                 "film_sha256": hash,
             })
+            .to_string(),
         );
         return;
     }
@@ -319,19 +393,19 @@ fn summary(
     }
     let total = rays.total() as f64;
     let state = hash.map_or("stopped before it was finished".to_owned(), |h| format!("film {}", short_hash(h)));
-    eprintln!(
+    tell(&plain(&format!(
         "{}: {} x {}, {} rays in {seconds:.2} s ({} rays/s), {state}",
-        output.display(),
+        output::shown(output),
         film.crop.width,
         film.crop.height,
         short(total),
         short(total / seconds.max(1e-9)),
-    );
+    )));
     if lost.rays > 0 && world.render.max_depth == 0 {
-        eprintln!("  depth 0: mirrors and glass send no rays on");
+        tell("  depth 0: mirrors and glass send no rays on");
     }
-    for warning in statistics.warnings(world, pixels) {
-        eprintln!("  {warning}");
+    for warning in odd {
+        tell(&plain(&format!("  {warning}")));
     }
 }
 
@@ -343,26 +417,7 @@ fn enough_memory(world: &World, crop: Option<Crop>) -> Outcome {
         return Ok(());
     }
     let needed = u64::from(width).saturating_mul(u64::from(height)).saturating_mul(BYTES_PER_PIXEL);
-    match free_memory() {
-        Some(free) if needed > free => {
-            let gib = |bytes: u64| bytes as f64 / f64::from(1 << 30);
-            let message = format!(
-                "a picture of {width} x {height} pixels needs {:.1} GiB of memory, and {:.1} GiB are free",
-                gib(needed),
-                gib(free)
-            );
-            Err(Failure::new(
-                SCENE,
-                Report::error(message).help("choose a smaller --size, or render parts with --crop"),
-            ))
-        }
-        _ => Ok(()),
-    }
-}
-
-/// Linux: what the kernel says can be had without swapping.
-fn free_memory() -> Option<u64> {
-    let text = std::fs::read_to_string("/proc/meminfo").ok()?;
-    let line = text.lines().find_map(|l| l.strip_prefix("MemAvailable:"))?;
-    line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok().map(|kib| kib * 1024)
+    memory::check(&format!("a picture of {width} x {height} pixels"), needed)
+        .map_err(|report| report.help("choose a smaller --size, or render parts with --crop"))
+        .or_fail(SCENE)
 }

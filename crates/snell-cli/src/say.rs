@@ -3,7 +3,7 @@
 use crate::excerpt::{Excerpt, plain};
 use miette::{GraphicalReportHandler, GraphicalTheme, ThemeCharacters, ThemeStyles};
 use snell_formats::Report;
-use std::io::{IsTerminal, Write};
+use std::io::{ErrorKind, IsTerminal, Write};
 
 /// Exit code: the command did what it should and found a difference, or failed on the way.
 pub const FAILED: u8 = 1;
@@ -52,22 +52,43 @@ pub fn colored(stream: &impl IsTerminal) -> bool {
     stream.is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|v| v.is_empty())
 }
 
-/// More reports of one kind than this are counted, not shown.
-pub const SHOWN: usize = 20;
+/// More warnings of one kind than this are counted, not shown.
+const SHOWN: usize = 3;
+/// The same of errors.
+const SHOWN_ERRORS: usize = 20;
 
-/// Writes reports to stderr, the first ones in full.
-pub fn reports(reports: &[Report]) {
-    for shown in &reports[..reports.len().min(SHOWN)] {
-        report(shown);
+/// The reports that are shown, and a line for each kind of which more were found. Errors come last, where people look.
+pub fn shown(reports: &[Report]) -> (Vec<&Report>, Vec<String>, Vec<&Report>) {
+    let mut kinds: Vec<(&str, usize)> = Vec::new();
+    let mut warnings = Vec::new();
+    for report in reports {
+        let Some(code) = report.warning else { continue };
+        let kind = kinds.iter().position(|(known, _)| *known == code).unwrap_or(kinds.len());
+        if kind == kinds.len() {
+            kinds.push((code, 0));
+        }
+        kinds[kind].1 += 1;
+        if kinds[kind].1 <= SHOWN {
+            warnings.push(report);
+        }
     }
-    more(reports.len());
+    let more =
+        |&(code, count): &(&str, usize)| (count > SHOWN).then(|| format!("… and {} more of {code}", count - SHOWN));
+    let mut lines: Vec<String> = kinds.iter().filter_map(more).collect();
+    let mut errors: Vec<&Report> = reports.iter().filter(|report| report.warning.is_none()).collect();
+    if errors.len() > SHOWN_ERRORS {
+        lines.push(format!("… and {} more errors", errors.len() - SHOWN_ERRORS));
+        errors.truncate(SHOWN_ERRORS);
+    }
+    (warnings, lines, errors)
 }
 
-/// Says how many were not shown.
-pub fn more(count: usize) {
-    if count > SHOWN {
-        eprintln!("… and {} more like these", count - SHOWN);
-    }
+/// Writes reports to stderr.
+pub fn reports(reports: &[Report]) {
+    let (warnings, more, errors) = shown(reports);
+    warnings.into_iter().for_each(report);
+    more.iter().for_each(|line| tell(line));
+    errors.into_iter().for_each(report);
 }
 
 /// Writes a report with its place in the source to stderr.
@@ -80,13 +101,43 @@ pub fn report(report: &Report) {
     if handler.render_report(&mut text, &Excerpt::of(report)).is_err() {
         text = plain(&report.to_string());
     }
-    eprintln!("{}", text.trim());
+    tell(text.trim());
+}
+
+/// Writes a line to stderr. Where that cannot be written to, nobody is told, and the work goes on.
+pub fn tell(line: &str) {
+    let _ = writeln!(std::io::stderr().lock(), "{line}");
 }
 
 /// Writes text to stdout. A reader that has gone away (`| head`) is no error.
-#[expect(clippy::unnecessary_wraps, reason = "the last step of a command")]
 pub fn print(text: &str) -> Outcome {
+    print_bytes(text.as_bytes())
+}
+
+/// Writes bytes to stdout. A reader that has gone away is no error.
+pub fn print_bytes(bytes: &[u8]) -> Outcome {
     let mut out = std::io::stdout().lock();
-    let _ = out.write_all(text.as_bytes()).and_then(|()| out.flush());
-    Ok(())
+    match out.write_all(bytes).and_then(|()| out.flush()) {
+        Err(e) if e.kind() != ErrorKind::BrokenPipe => {
+            Err(Failure::new(FAILED, Report::error(format!("cannot write to standard output: {e}"))))
+        }
+        _ => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use snell::scene::WarningCode;
+
+    #[test]
+    fn the_error_is_shown_after_any_number_of_warnings() {
+        let warning = |i: usize| Report::warning(WarningCode::ALL[i % 2], format!("warning {i}"));
+        let mut reports: Vec<Report> = (0..50).map(warning).collect();
+        reports.insert(17, Report::error("the error"));
+        let (warnings, more, errors) = shown(&reports);
+        assert_eq!((warnings.len(), errors.len()), (6, 1));
+        assert_eq!(errors[0].message, "the error");
+        assert!(more.len() == 2 && more[0].contains("22 more of W001"), "{more:?}");
+    }
 }

@@ -430,7 +430,6 @@ fn wrong_usage_ends_with_2() {
         &["render", "lecture/default", "--search", "no-such-folder"],
         &["render", "lecture/default", "--size", "9x9", "--crop", "0,0,4000000000,4000000000"],
         &["render", "a/driver.txt", "b/driver.txt", "-o", "out/"],
-        &["render", "--from", "x.png", "--size", "5x5"],
         &["convert", "s.txt", "-o", "s.yaml"],
         &["diff", "a.png", "b.png", "--tolerance", "nan"],
         &["scenes", "--save", "lecture/defualt"],

@@ -1,10 +1,12 @@
 //! Reading with a limit, writing without losing what was there.
 
-use crate::report::{Report, Source};
-use std::fs::File;
+use crate::report::Report;
+use std::fs::{File, Permissions};
 use std::io::{BufWriter, Cursor, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
+use tempfile::NamedTempFile;
 
 /// The largest scene or driver text that is read, in bytes.
 pub const MAX_SCENE_BYTES: u64 = 64 << 20;
@@ -31,19 +33,18 @@ pub fn read(path: &Path, limit: u64) -> Result<Vec<u8>, Report> {
     Ok(bytes)
 }
 
-/// Reads a file of at most `limit` bytes as a [`text`].
-///
-/// # Errors
-/// As [`read`].
-pub fn read_text(path: &Path, limit: u64) -> Result<Source, Report> {
-    read(path, limit).map(|bytes| text(path, &bytes))
-}
-
-/// The bytes of a file as a text. Bytes that are no UTF-8 (old comments in Latin-1) become `\u{fffd}`, a byte order mark is
-/// dropped.
-pub fn text(path: &Path, bytes: &[u8]) -> Source {
-    let text = String::from_utf8_lossy(bytes);
-    Source::new(path.display().to_string(), text.strip_prefix('\u{feff}').unwrap_or(&text))
+/// Are these two names of one file? Links are followed, and where the disk does not tell `A` from `a`, neither does this.
+pub fn is_same_file(a: &Path, b: &Path) -> bool {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::MetadataExt;
+        let identity = |path: &Path| path.metadata().map(|m| (m.dev(), m.ino()));
+        matches!((identity(a), identity(b)), (Ok(a), Ok(b)) if a == b)
+    }
+    #[cfg(not(unix))]
+    {
+        matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
+    }
 }
 
 /// Something to write to and to go back in.
@@ -72,10 +73,58 @@ pub fn check_writable(path: &Path) -> Result<(), Report> {
     if is_device(&target) {
         return Ok(());
     }
-    tempfile::Builder::new().prefix(PREFIX).tempfile_in(folder).map(drop).map_err(|e| write_error(path, &e))
+    temporary(&folder, None).map(drop).map_err(|e| write_error(path, &e))
 }
 
+/// Names of temporary files.
 const PREFIX: &str = ".snell-";
+const SUFFIX: &str = ".tmp";
+
+/// A temporary file in a folder, which is locked as long as it is open; what a program left there that was killed is removed.
+fn temporary(folder: &Path, permissions: Option<Permissions>) -> std::io::Result<NamedTempFile> {
+    remove_abandoned(folder);
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(PREFIX).suffix(SUFFIX);
+    if let Some(permissions) = permissions {
+        builder.permissions(permissions);
+    }
+    for _ in 0..MOST_TRIES {
+        let file = builder.tempfile_in(folder)?;
+        // Disks that know no locks have no abandoned files removed either.
+        let _ = file.as_file().lock();
+        // Between its making and its lock another program may have taken it for an abandoned one.
+        if file.path().exists() {
+            return Ok(file);
+        }
+    }
+    Err(std::io::Error::other("temporary files vanish"))
+}
+
+const MOST_TRIES: u32 = 100;
+
+/// Removes temporary files whose program is gone, which left them without a lock; once for each folder.
+fn remove_abandoned(folder: &Path) {
+    static LOOKED_AT: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+    let Ok(mut looked_at) = LOOKED_AT.lock() else { return };
+    if looked_at.iter().any(|other| other == folder) {
+        return;
+    }
+    looked_at.push(folder.to_owned());
+    let Ok(entries) = std::fs::read_dir(folder) else { return };
+    for entry in entries.flatten() {
+        let name = entry.file_name();
+        let random = name.to_str().and_then(|name| name.strip_prefix(PREFIX)?.strip_suffix(SUFFIX));
+        // `tempfile` draws six letters and digits.
+        if random.is_some_and(|r| r.len() == 6 && r.bytes().all(|b| b.is_ascii_alphanumeric()))
+            && entry.file_type().is_ok_and(|kind| kind.is_file())
+            && let Ok(file) = File::options().write(true).open(entry.path())
+            && file.try_lock().is_ok()
+        {
+            // Somebody else may have removed it, or may have to.
+            let _ = std::fs::remove_file(entry.path());
+        }
+    }
+}
 
 fn write_error(path: &Path, e: &std::io::Error) -> Report {
     Report::error(format!("cannot write `{}`: {e}", path.display()))
@@ -105,6 +154,24 @@ fn target(path: &Path) -> Result<(PathBuf, PathBuf), Report> {
     }
 }
 
+/// What would be written, in memory.
+///
+/// # Errors
+/// When writing fails.
+pub fn in_memory(content: impl FnOnce(&mut dyn Out) -> std::io::Result<()>) -> std::io::Result<Vec<u8>> {
+    let mut bytes = Cursor::new(Vec::new());
+    content(&mut bytes)?;
+    Ok(bytes.into_inner())
+}
+
+/// Is a pipe or a device being written to, which may take for ever?
+static WAITING: AtomicBool = AtomicBool::new(false);
+
+/// Is somebody waited for who may never come, like the reader of a pipe?
+pub fn is_waiting() -> bool {
+    WAITING.load(Ordering::Relaxed)
+}
+
 /// Writes a file under a temporary name in the same folder and renames it when all is written, so that a failure or an
 /// interruption leaves what was there before.
 ///
@@ -115,20 +182,23 @@ pub fn write(path: &Path, content: impl FnOnce(&mut dyn Out) -> std::io::Result<
     let failed = |e: std::io::Error| write_error(path, &e);
     if is_device(&target) {
         // What cannot be renamed over cannot be gone back in either.
-        let mut bytes = Cursor::new(Vec::new());
-        content(&mut bytes).map_err(failed)?;
-        return File::create(&target).and_then(|mut file| file.write_all(bytes.get_ref())).map_err(failed);
+        let bytes = in_memory(content).map_err(failed)?;
+        WAITING.store(true, Ordering::Relaxed);
+        // A pipe without a reader is waited for here.
+        let written =
+            File::options().write(true).open(&target).and_then(|mut file| file.write_all(&bytes)).map_err(failed);
+        WAITING.store(false, Ordering::Relaxed);
+        return written;
     }
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(PREFIX).suffix(".tmp");
+    // Like any other new file: what the umask allows, not only the owner; like the old one, if there is one.
     #[cfg(unix)]
-    {
-        // Like any other new file: what the umask allows, not only the owner; like the old one, if there is one.
+    let permissions = {
         use std::os::unix::fs::PermissionsExt;
-        let old = target.metadata().map(|m| m.permissions());
-        builder.permissions(old.unwrap_or_else(|_| std::fs::Permissions::from_mode(0o666)));
-    }
-    let temporary = builder.tempfile_in(folder).map_err(failed)?;
+        Some(target.metadata().map_or_else(|_| Permissions::from_mode(0o666), |m| m.permissions()))
+    };
+    #[cfg(not(unix))]
+    let permissions = None;
+    let temporary = temporary(&folder, permissions).map_err(failed)?;
     let note = |path: Option<PathBuf>| PENDING.lock().map(|mut pending| *pending = path);
     let _ = note(Some(temporary.path().to_owned()));
     let mut writer = BufWriter::new(&temporary);
@@ -183,6 +253,41 @@ mod tests {
         std::fs::set_permissions(&real, permissions).unwrap();
         assert!(check_writable(&link).unwrap_err().message.contains("read-only"));
         assert!(write(&link, |w| w.write_all(b"newer")).is_err());
+    }
+
+    #[test]
+    fn what_a_killed_program_left_is_removed_and_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        // Left behind; in use; a person's own.
+        std::fs::write(at(".snell-Ab3xYz.tmp"), b"half a picture").unwrap();
+        let used = tempfile::Builder::new().prefix(PREFIX).suffix(SUFFIX).tempfile_in(folder.path()).unwrap();
+        used.as_file().lock().unwrap();
+        for name in [".snell-notes.tmp", ".snell-Ab3xY!.tmp", ".snell-Ab3xYz", "snell-Ab3xYz.tmp"] {
+            std::fs::write(at(name), b"mine").unwrap();
+        }
+        write(&at("new.txt"), |w| w.write_all(b"new")).unwrap();
+        assert!(!at(".snell-Ab3xYz.tmp").exists());
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 6);
+        assert!(used.path().exists());
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_are_other_names_of_one_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        std::fs::write(at("a"), b"").unwrap();
+        std::fs::write(at("b"), b"").unwrap();
+        std::fs::hard_link(at("a"), at("hard")).unwrap();
+        std::os::unix::fs::symlink(at("a"), at("soft")).unwrap();
+        std::os::unix::fs::symlink(at("none"), at("dangling")).unwrap();
+        for (name, same) in
+            [("a", true), ("hard", true), ("soft", true), ("b", false), ("none", false), ("dangling", false)]
+        {
+            assert_eq!(is_same_file(&at("a"), &at(name)), same, "{name}");
+        }
+        assert!(!is_same_file(&at("none"), &at("none")), "what is not there is nobody's input");
     }
 
     #[test]

@@ -11,13 +11,16 @@ pub mod builtin;
 pub mod disk;
 pub mod driver;
 pub mod figure;
+pub mod given;
 pub mod load;
+pub mod memory;
 pub mod model;
 pub mod nff;
 pub mod page;
 pub mod picture;
 pub mod report;
 pub mod scene_file;
+pub mod text;
 pub mod texture;
 mod words;
 

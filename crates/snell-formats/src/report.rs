@@ -46,7 +46,7 @@ pub struct Report {
 impl Report {
     /// An error without a place.
     pub fn error(message: impl Into<String>) -> Self {
-        Self { message: message.into(), help: None, place: None, warning: None }
+        Self { message: in_short(message.into()), help: None, place: None, warning: None }
     }
 
     /// A warning without a place.
@@ -66,7 +66,7 @@ impl Report {
     /// The same, with advice.
     #[must_use]
     pub fn help(mut self, help: impl Into<String>) -> Self {
-        self.help = Some(help.into());
+        self.help = Some(in_short(help.into()));
         self
     }
 }
@@ -87,6 +87,51 @@ impl From<Report> for Vec<Report> {
     fn from(report: Report) -> Self {
         vec![report]
     }
+}
+
+/// Longer words, and longer texts in quotes, are cut in the middle: a file may hold one of a million characters.
+const LONGEST_WORD: usize = 200;
+
+/// A message without the middle of its longest words.
+fn in_short(text: String) -> String {
+    if text.len() <= LONGEST_WORD {
+        return text;
+    }
+    // What is quoted is one word, spaces and all.
+    let quoted = |(number, part): (usize, &str)| {
+        if number % 2 == 1 { cut(part) } else { part.split(' ').map(cut).collect::<Vec<_>>().join(" ") }
+    };
+    text.split('`').enumerate().map(quoted).collect::<Vec<_>>().join("`")
+}
+
+fn cut(word: &str) -> String {
+    let count = if word.len() <= LONGEST_WORD { 0 } else { word.chars().count() };
+    if count <= LONGEST_WORD {
+        return word.to_owned();
+    }
+    let half = (LONGEST_WORD - 1) / 2;
+    word.chars().take(half).chain(['…']).chain(word.chars().skip(count - half)).collect()
+}
+
+/// Longer lists of names are counted.
+const LISTED: usize = 20;
+
+/// Names in a message.
+pub fn list<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
+    let mut names = names.into_iter();
+    let first: Vec<&str> = names.by_ref().take(LISTED).collect();
+    match (first.is_empty(), names.count()) {
+        (true, _) => "none".to_owned(),
+        (false, 0) => first.join(", "),
+        (false, more) => format!("{} … and {more} more", first.join(", ")),
+    }
+}
+
+/// Which names there are, the one most like `word` first.
+pub fn known_names<'a>(word: &str, known: impl IntoIterator<Item = &'a str, IntoIter: Clone>) -> String {
+    let known = known.into_iter();
+    let near = nearest(word, known.clone()).map_or(String::new(), |near| format!("did you mean `{near}`? "));
+    format!("{near}Known here: {}", list(known))
 }
 
 /// The known word that is nearest to a misspelt one, if any is near.
@@ -113,6 +158,20 @@ mod tests {
         assert_eq!(source.line_column(4), (2, 1), "inside ü is ü");
         assert_eq!(source.line_column(99), (3, 1));
         assert_eq!(&*Source::new("x", "a\r\nb\rc\n").text, "a\nb\nc\n");
+    }
+
+    #[test]
+    fn long_words_are_cut_in_the_middle() {
+        let (word, short) = ("x".repeat(300), "y".repeat(200));
+        for text in [format!("read {word} here"), format!("read `a {word} b` here")] {
+            let message = Report::error(text).message;
+            assert!(message.chars().count() <= 220 && message.contains('…') && message.ends_with(" here"), "{message}");
+        }
+        let message = format!("read `{short}` and {short}");
+        assert_eq!(Report::error(message.clone()).message, message);
+        let many: Vec<String> = (0..1000).map(|i| i.to_string()).collect();
+        assert_eq!(list(many.iter().map(String::as_str)).matches(',').count(), 19);
+        assert!(known_names("glas", ["glass", "green"]).starts_with("did you mean `glass`? Known here: glass, green"));
     }
 
     #[test]

@@ -10,6 +10,7 @@ use snell::explain::text::{Style, text};
 use snell::explain::{Explanation, Names, Sightings, explain, find as find_object};
 use snell_formats::figure::figure;
 use snell_formats::page::page;
+use snell_formats::report::known_names;
 use std::sync::Arc;
 
 /// The viewer, built from `viewer/` by `npm run bundle`.
@@ -69,11 +70,10 @@ pub type Seen<'py> = (Vec<(String, u64)>, Bound<'py, PyArray2<f64>>);
 /// Where an object is seen.
 pub fn find<'py>(py: Python<'py>, ready: &Ready, object: &str, progress: Option<&Py<PyAny>>) -> PyResult<Seen<'py>> {
     let Ready { world, scene, .. } = ready;
-    let mut known = world.object_names();
+    let known = world.object_names();
     if !known.contains(&object) {
-        known.truncate(30);
         let message = format!("no object is called `{object}`");
-        return Err(raise(py, "SceneError", vec![(None, message, Some(format!("objects: {}", known.join(", "))))]));
+        return Err(raise(py, "SceneError", vec![(None, message, Some(known_names(object, known)))]));
     }
     let work = watched(py, ready, 0, None, progress, |options| find_object(world, scene, object, options));
     let Sightings { paths, mask } = unless_stopped(work)?;

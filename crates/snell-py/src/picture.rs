@@ -10,7 +10,7 @@ use pyo3::exceptions::{PyKeyboardInterrupt, PyRuntimeError};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use serde_json::json;
-use snell::explain::{Channels, Names, ViewScene, channels, hits};
+use snell::explain::{Channels, Names, ViewScene, black_picture, channels, hits};
 use snell::film::transfer::{Encoding, Rounding, Transfer};
 use snell::film::{Crop, Film, Rgb};
 use snell::render::{RenderError, Rendered, render};
@@ -43,7 +43,8 @@ impl NativePicture {
         }
         let failed = |error: RenderError| raise(py, "RenderError", vec![(None, error.to_string(), None)]);
         let Rendered { film, statistics } = rendered.map_err(failed)?;
-        let warnings = statistics.warnings(&ready.world, film.pixels.len() as u64);
+        let mut warnings = statistics.warnings(&ready.world, film.pixels.len() as u64);
+        warnings.extend(black_picture(&Names { world: &ready.world, scene: &ready.scene }, &film));
         Ok(Self { film, ready, seconds, rays: statistics.rays.total(), warnings })
     }
 

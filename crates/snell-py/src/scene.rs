@@ -11,7 +11,7 @@ use snell::scene::{Mesh, Scene};
 use snell::world::World;
 use snell_formats::load::{Kind, ModelFile, load, load_with};
 use snell_formats::scene_file::{self, Syntax};
-use snell_formats::{LoadOptions, Report, Source, builtin, disk};
+use snell_formats::{LoadOptions, Report, Source, builtin};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -95,8 +95,9 @@ fn read(py: Python<'_>, name: String) -> PyResult<(String, Arrays<'_>, PathBuf)>
 /// A scene with one value changed, as `--set` does.
 #[pyfunction]
 fn changed(py: Python<'_>, text: String, key: String, value: String) -> PyResult<String> {
-    let scene = scene_file::set(&Source::new(OURS, text), Syntax::Json, &format!("{key}={value}"))
-        .and_then(|source| scene_file::parse(&source, Syntax::Toml))
+    let source = Source::new(OURS, text);
+    let mut scene = scene_file::parse(&source, Syntax::Json).map_err(|report| failed(py, &[report], Some(&source)))?;
+    scene_file::set(&mut scene, &format!("{key}={value}"))
         .map_err(|report| raise(py, "SceneError", vec![(Some(key), report.message, report.help)]))?;
     hand_over(py, scene).map(|(text, _)| text)
 }
@@ -119,8 +120,8 @@ fn write(py: Python<'_>, path: PathBuf, text: String, arrays: ReadArrays<'_>) ->
     py.detach(|| {
         let mut scene = scene_file::parse(&source, Syntax::Json)?;
         inline.fill(&mut scene);
-        let text = scene_file::to_text(&scene, syntax)?;
-        disk::write(&path, |out| out.write_all(text.as_bytes()))
+        // Who saves a scene under the name of a file means that file.
+        scene_file::save(scene, &path, syntax, "", |_| Ok(())).map(drop)
     })
     .map_err(|report| failed(py, &[report], Some(&source)))
 }

@@ -10,6 +10,9 @@ use std::fmt;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 
+/// Edge of a tile in pixels, if nobody says.
+pub const TILE_SIZE: u32 = 32;
+
 /// How to render; nothing here changes a bit of the picture but `crop`, which cuts it.
 #[derive(Clone, Copy)]
 pub struct Options<'a> {
@@ -29,7 +32,7 @@ pub struct Options<'a> {
 
 impl Default for Options<'_> {
     fn default() -> Self {
-        Self { threads: 0, tile_size: 32, lanes: LaneWidth::best(), crop: None, progress: None, cancel: None }
+        Self { threads: 0, tile_size: TILE_SIZE, lanes: LaneWidth::best(), crop: None, progress: None, cancel: None }
     }
 }
 
@@ -155,6 +158,21 @@ impl<'a> PixelTracer<'a> {
     }
 }
 
+/// Every number below `count` once, each far from the last ones: bands of sky and bands of glass take turns, so that the
+/// pixels that are finished tell how long the others will take. Steps of the golden ratio leave no large gap (Weyl 1916).
+fn band_of_turn(turn: usize, count: usize) -> usize {
+    let gcd = |mut a: u64, mut b: u64| {
+        while b != 0 {
+            (a, b) = (b, a % b);
+        }
+        a
+    };
+    let count = count as u64;
+    let golden = (count as f64 * 0.618_033_988_749_895) as u64;
+    let step = (golden.max(1)..).find(|&step| gcd(step, count) == 1).unwrap_or(1);
+    (turn as u64 * step % count) as usize
+}
+
 /// What one thread does.
 struct Worker<'a, 'b>(&'a Shared<'b>);
 
@@ -169,7 +187,7 @@ impl Kernel for Worker<'_, '_> {
 /// One row of tiles, and its part of the film.
 ///
 /// A thread takes a band of its own and goes from left to right, so that the memory it touches is near; when no band is left,
-/// it helps the others.
+/// it helps the others. Neighbours in time are far from each other in the picture ([`band_of_turn`]).
 struct Band<'a> {
     /// How many of its tiles have been taken, from the left.
     taken: AtomicU64,
@@ -220,8 +238,10 @@ impl Shared<'_> {
     #[inline(always)]
     fn worker<L: Lanes>(&self) {
         let mut tracer = Tracer::<L, ()>::new(self.world, self.options.cancel, ());
+        let count = self.bands.len();
         let own = std::iter::from_fn(|| Some(self.next_band.fetch_add(1, Ordering::Relaxed)));
-        for band in own.take_while(|&band| band < self.bands.len()).chain(0..self.bands.len()) {
+        let own = own.take_while(|&turn| turn < count).map(|turn| band_of_turn(turn, count));
+        for band in own.chain(0..count) {
             while let Some(tile) = self.take_tile(band) {
                 let rays_before = tracer.statistics.rays.total();
                 let Some(radiance) = tracer.trace(&tile) else { break };
@@ -265,6 +285,25 @@ impl Shared<'_> {
         if let Some(progress) = self.options.progress {
             let total_pixels = u64::from(self.crop.width) * u64::from(self.crop.height);
             progress(Progress { pixels, total_pixels, rays });
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::band_of_turn;
+
+    #[test]
+    fn every_band_has_its_turn_and_neighbours_in_time_are_far_apart() {
+        for count in 1..300 {
+            let order: Vec<usize> = (0..count).map(|turn| band_of_turn(turn, count)).collect();
+            let mut sorted = order.clone();
+            sorted.sort_unstable();
+            assert_eq!(sorted, (0..count).collect::<Vec<_>>());
+            // Halves are sampled evenly from the first tenth on, so that a rate tells the time left.
+            let begun = &order[..count.div_ceil(10)];
+            let upper = begun.iter().filter(|&&band| band < count / 2).count();
+            assert!(upper.abs_diff(begun.len() - upper) <= 1 + begun.len() / 4, "{count}: {begun:?}");
         }
     }
 }

@@ -1,42 +1,51 @@
 //! `--set` and `--without`: the same pixel, before and after, branch by branch.
 
-use super::{colored, known_object, pixel, settings};
+use super::{Asked, ask, colored, known_object};
 use crate::args::ExplainArgs;
-use crate::say::{self, OrFail, Outcome, SCENE};
+use crate::excerpt::plain;
+use crate::recipe::Changes;
+use crate::say::{self, OrFail, Outcome, SCENE, tell};
 use snell::explain::text::{head, mean, numbers, swatch};
-use snell::explain::{Explanation, Names, Path, by_path};
+use snell::explain::{Path, by_path};
 use snell::film::Rgb;
 use snell::render::trace_pixel;
 use snell::scene::Scene;
-use snell::world::World;
-use snell_formats::load::Loaded;
-use snell_formats::{LoadOptions, load};
 use std::fmt::Write;
 
-/// Compares a pixel of a scene, as explained, with that of the scene that `args` ask for.
-pub fn run(before: &Explanation, world: &World, original: &Loaded, args: &ExplainArgs) -> Outcome {
-    let [x, y] = before.pixel;
-    let mut loaded = load(&args.scene, &LoadOptions::from(&args.reading)).or_fail(SCENE)?;
-    settings(&mut loaded, args);
+/// Compares a pixel of the scene with that of the scene that `args` ask for.
+pub fn run(args: &ExplainArgs, changes: &Changes, pixel: [u32; 2]) -> Outcome {
+    let mut asked = ask(args, changes)?;
     if let Some(object) = &args.without {
-        known_object(world, object)?;
-        remove(&mut loaded.scene, object);
+        known_object(&asked.world, object)?;
+        remove(&mut asked.loaded.scene, object);
+        asked.world = asked.loaded.world().or_fail(SCENE)?;
     }
-    let changed = loaded.world().or_fail(SCENE)?;
-    let after = pixel(&changed, &loaded, args, x, y)?;
-    let mut text = head(before, colored());
+    let after = asked.pixel(pixel)?;
+    let [x, y] = after.pixel;
     let without = args.without.as_ref().map(|object| format!("without {object}"));
-    let changes: Vec<String> = args.reading.set.iter().map(|change| format!("with {change}")).chain(without).collect();
-    let _ = writeln!(
-        text,
-        "\n{}:\n{}{}\n{}\n",
-        changes.join(", "),
-        swatch(after.color, after.transfer, colored()),
-        numbers(after.color),
-        after.sentence
-    );
-    text += &table(&paths(world, original, x, y), &paths(&changed, &loaded, x, y));
-    say::print(&text)
+    let made: Vec<String> = changes.set.iter().map(|change| format!("with {change}")).chain(without).collect();
+    let made = plain(&made.join(", "));
+    let shown =
+        format!("{}{}\n{}\n", swatch(after.color, after.transfer, colored()), numbers(after.color), after.sentence);
+    // The change may be what makes a scene of it.
+    let unchanged = Changes { set: Vec::new(), ..changes.clone() };
+    let original = match ask(args, &unchanged).and_then(|original| Ok((original.pixel(pixel)?, original))) {
+        Ok(original) => original,
+        Err(failure) => {
+            let why = failure.reports.iter().find(|report| report.warning.is_none());
+            let why = why.map_or(String::new(), |report| format!(": {report}"));
+            tell(&plain(&format!("note: only what is asked for is shown, as without it there is no such pixel{why}")));
+            return say::print(&format!(
+                "{}\n{made}:\n{shown}\n{}",
+                head(&after, colored()),
+                table(&[], &paths(&asked, x, y))
+            ));
+        }
+    };
+    let (before, original) = original;
+    let text = format!("{}\n{made}:\n{shown}\n", head(&before, colored()));
+    let [u, v] = before.pixel;
+    say::print(&(text + &table(&paths(&original, u, v), &paths(&asked, x, y))))
 }
 
 /// Takes an object out of a scene.
@@ -60,9 +69,8 @@ fn remove(scene: &mut Scene, object: &str) {
     scene.lathes.retain(|lathe| lathe.name.as_deref() != Some(object));
 }
 
-fn paths(world: &World, loaded: &Loaded, x: u32, y: u32) -> Vec<(Path, Rgb)> {
-    let names = Names { world, scene: &loaded.scene };
-    trace_pixel(world, x, y).map_or(Vec::new(), |trace| by_path(&names, &trace))
+fn paths(asked: &Asked, x: u32, y: u32) -> Vec<(Path, Rgb)> {
+    trace_pixel(&asked.world, x, y).map_or(Vec::new(), |trace| by_path(&asked.names(), &trace))
 }
 
 /// All paths of both, those that changed most first.

@@ -1,28 +1,36 @@
 //! `--find`: in which pixels an object is seen, and by which way.
 
-use super::known_object;
+use super::{Asked, known_object};
 use crate::args::{ExplainArgs, ProgressKind};
+use crate::excerpt::plain;
+use crate::output::refuse_inputs;
 use crate::progress::Reporter;
-use crate::say::{self, FAILED, Failure, OrFail, Outcome, USAGE};
+use crate::say::{self, FAILED, Failure, OrFail, Outcome, USAGE, tell};
 use snell::explain::find;
 use snell::film::transfer::{Encoding, Rounding, Transfer};
 use snell::film::{Crop, Film, Rgb};
 use snell::render::Options;
-use snell::world::World;
-use snell_formats::Report;
-use snell_formats::load::Loaded;
 use snell_formats::picture::{self, Format};
+use snell_formats::{Report, disk};
 use std::fmt::Write;
+use std::path::Path;
 
 /// Paths that are listed.
 const LISTED: usize = 20;
 
-pub fn run(world: &World, loaded: &Loaded, object: &str, args: &ExplainArgs) -> Outcome {
+pub fn run(asked: &Asked, object: &str, args: &ExplainArgs) -> Outcome {
+    let world = &asked.world;
     known_object(world, object)?;
+    let mask =
+        args.mask.as_deref().map(|file| Format::of(file).map(|format| (file, format))).transpose().or_fail(USAGE)?;
+    if let Some((file, _)) = mask {
+        refuse_inputs(file, asked.loaded.files().chain([Path::new(&args.scene)]))?;
+        disk::check_writable(file).or_fail(FAILED)?;
+    }
     let reporter = Reporter::new(ProgressKind::Auto, false, "looking");
     let update = |progress| reporter.update(progress);
     let options = Options { progress: Some(&update), ..Options::default() };
-    let found = find(world, &loaded.scene, object, &options).unwrap_or_default();
+    let found = find(world, &asked.loaded.scene, object, &options).unwrap_or_default();
     reporter.finish();
     let mut text = String::new();
     if found.paths.is_empty() {
@@ -36,7 +44,7 @@ pub fn run(world: &World, loaded: &Loaded, object: &str, args: &ExplainArgs) -> 
     }
     let pixels = found.mask.iter().filter(|share| **share > 0.0).count();
     let _ = writeln!(text, "{pixels:9} px  together: a pixel counts once for each way that it has");
-    if let Some(file) = &args.mask {
+    if let Some((file, format)) = mask {
         let [width, height] = world.camera.size;
         let mut film = Film::new([width, height], Crop { x: 0, y: 0, width, height })
             .map_err(|e| Failure::new(FAILED, Report::error(e.to_string())))?;
@@ -45,8 +53,8 @@ pub fn run(world: &World, loaded: &Loaded, object: &str, args: &ExplainArgs) -> 
         }
         film.finished.fill(true);
         let encoding = Encoding { transfer: Transfer::Linear, rounding: Rounding::Round };
-        picture::write(file, Format::of(file).or_fail(USAGE)?, &film, encoding, None).or_fail(FAILED)?;
-        eprintln!("{}", file.display());
+        picture::write(file, format, &film, encoding, None).or_fail(FAILED)?;
+        tell(&plain(&file.display().to_string()));
     }
-    say::print(&text)
+    say::print(&plain(&text))
 }

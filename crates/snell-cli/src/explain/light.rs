@@ -1,32 +1,20 @@
 //! `--light`: why a light is, or is not, on what the pixel shows.
 
 use super::colored;
-use crate::say::{Failure, USAGE};
 use snell::explain::Explanation;
 use snell::explain::text::{head, mean, numbers, six_digits};
-use snell_formats::Report;
 use std::fmt::Write;
 
 /// What the light does at every surface of the pixel that shows its own colour.
-pub fn text(explanation: &Explanation, name: &str) -> Result<String, Failure> {
-    let lights = explanation.samples.iter().flat_map(|s| &s.nodes).filter_map(|n| n.local.as_ref());
-    let mut known: Vec<&str> = lights.flat_map(|local| local.lights.iter().map(|light| light.name.as_str())).collect();
-    known.sort_unstable();
-    known.dedup();
-    if !known.contains(&name) {
-        let list = if known.is_empty() {
-            "no surface of this pixel asks for lights".to_owned()
-        } else {
-            format!("lights: {}", known.join(", "))
-        };
-        return Err(Failure::new(USAGE, Report::error(format!("no light is called `{name}`")).help(list)));
-    }
+pub fn text(explanation: &Explanation, name: &str) -> String {
     let mut text = head(explanation, colored());
     text.push('\n');
+    let mut asks = false;
     for sample in &explanation.samples {
         for node in &sample.nodes {
             let (Some(hit), Some(local)) = (&node.hit, &node.local) else { continue };
             let Some(light) = local.lights.iter().find(|light| light.name == name) else { continue };
+            asks = true;
             let at = |point: [f64; 3]| format!("({})", point.map(six_digits).join(", "));
             let _ = write!(text, "on {} at {}: ", hit.object, at(hit.point));
             let through = light.through.join(", ");
@@ -51,5 +39,8 @@ pub fn text(explanation: &Explanation, name: &str) -> Result<String, Failure> {
             };
         }
     }
-    Ok(text)
+    if !asks {
+        text.push_str("no surface of this pixel asks for lights\n");
+    }
+    text
 }

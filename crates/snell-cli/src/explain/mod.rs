@@ -5,45 +5,90 @@ mod find;
 mod light;
 
 use crate::args::ExplainArgs;
-use crate::say::{self, FAILED, Failure, OrFail, Outcome, SCENE, USAGE};
+use crate::excerpt::plain;
+use crate::input::what_is;
+use crate::output::{self, refuse_inputs, write_text};
+use crate::recipe::{Changes, Recipe};
+use crate::say::{self, Failure, OrFail, Outcome, SCENE, USAGE, tell};
 use snell::explain::text::{self, Style};
 use snell::explain::{Explanation, Names, explain};
 use snell::world::World;
+use snell_formats::Report;
 use snell_formats::figure::figure;
+use snell_formats::given::Given;
 use snell_formats::load::Loaded;
 use snell_formats::page::page;
-use snell_formats::{LoadOptions, Report, disk, load};
+use snell_formats::report::known_names;
 use std::path::Path;
 
 /// The viewer, built from `viewer/` by `npm run bundle`.
 const VIEWER: &str = include_str!("../../assets/snell-viewer.js");
 
+/// What is explained: a scene as a command line asks for it.
+struct Asked {
+    recipe: Recipe,
+    loaded: Loaded,
+    world: World,
+}
+
+impl Asked {
+    fn names(&self) -> Names<'_> {
+        Names { world: &self.world, scene: &self.loaded.scene }
+    }
+
+    /// Explains a pixel of the picture, which may be a part of the scene's.
+    fn pixel(&self, [x, y]: [u32; 2]) -> Result<Explanation, Failure> {
+        let [x, y] = self.in_whole([x, y])?;
+        let found = explain(&self.world, &self.loaded.scene, &self.recipe.name, x, y);
+        found.map(|(explanation, _)| explanation).ok_or_else(|| no_pixel([x, y], self.world.camera.size))
+    }
+
+    /// A pixel of the picture in the whole one.
+    fn in_whole(&self, [x, y]: [u32; 2]) -> Result<[u32; 2], Failure> {
+        match self.recipe.crop {
+            None => Ok([x, y]),
+            Some(crop) if x < crop.width && y < crop.height => Ok([crop.x + x, crop.y + y]),
+            Some(crop) => Err(no_pixel([x, y], [crop.width, crop.height])),
+        }
+    }
+}
+
+fn no_pixel([x, y]: [u32; 2], [width, height]: [u32; 2]) -> Failure {
+    let message = format!("there is no pixel {x},{y} in a picture of {width} x {height}");
+    let help = format!("columns are 0 to {}, rows 0 to {}, from the top left", width - 1, height - 1);
+    Failure::new(USAGE, Report::error(message).help(help))
+}
+
 pub fn run(args: &ExplainArgs) -> Outcome {
-    let mut options = LoadOptions::from(&args.reading);
-    if args.find.is_none() {
-        // Of a pixel, `--set` and `--without` ask what would be if.
-        options.set.clear();
-    }
-    let mut loaded = load(&args.scene, &options).or_fail(SCENE)?;
-    settings(&mut loaded, args);
-    let world = loaded.world().or_fail(SCENE)?;
+    let changes = Changes::from(args);
     if let Some(object) = &args.find {
-        return find::run(&world, &loaded, object, args);
+        return find::run(&ask(args, &changes)?, object, args);
     }
-    let Some([x, y]) = args.pixel else {
+    let Some(pixel) = args.pixel else {
         let report =
             Report::error("which pixel?").help("like `snell explain lecture/default 256,256`, or --find OBJECT");
         return Err(Failure::new(USAGE, report));
     };
-    let explanation = pixel(&world, &loaded, args, x, y)?;
-    if !args.reading.set.is_empty() || args.without.is_some() {
-        return compare::run(&explanation, &world, &loaded, args);
+    // Of a pixel, `--set` and `--without` ask what would be if.
+    if !changes.set.is_empty() || args.without.is_some() {
+        return compare::run(args, &changes, pixel);
     }
+    let asked = ask(args, &changes)?;
     if let Some(light) = &args.light {
-        return say::print(&light::text(&explanation, light)?);
+        known_light(&asked, light)?;
+    }
+    for file in [&args.html, &args.svg].into_iter().flatten() {
+        refuse_inputs(file, asked.loaded.files().chain([Path::new(&args.scene)]))?;
+        if !output::is_standard(file) {
+            snell_formats::disk::check_writable(file).or_fail(say::FAILED)?;
+        }
+    }
+    let explanation = asked.pixel(pixel)?;
+    if let Some(light) = &args.light {
+        return say::print(&light::text(&explanation, light));
     }
     if let Some(file) = &args.html {
-        return write(file, &page(&explanation, &Names { world: &world, scene: &loaded.scene }, VIEWER));
+        return write(file, &page(&explanation, &asked.names(), VIEWER));
     }
     if let Some(file) = &args.svg {
         return write(file, &figure(&explanation));
@@ -51,10 +96,32 @@ pub fn run(args: &ExplainArgs) -> Outcome {
     if args.json {
         return say::print(&format!("{}\n", json(&explanation)));
     }
-    let plain = Style::default();
+    let default = Style::default();
     let style =
-        Style { top: args.top.unwrap_or(plain.top), depth: args.depth.unwrap_or(plain.depth), colored: colored() };
+        Style { top: args.top.unwrap_or(default.top), depth: args.depth.unwrap_or(default.depth), colored: colored() };
     say::print(&text::text(&explanation, style))
+}
+
+/// Reads what is explained, of a scene or of a picture that knows its scene.
+fn ask(args: &ExplainArgs, changes: &Changes) -> Result<Asked, Failure> {
+    let (recipe, mut loaded) = if let Given::Picture(_) = what_is(&args.scene) {
+        let mut recipe = Recipe::in_picture(Path::new(&args.scene))?;
+        recipe.change(changes);
+        let loaded = recipe.load(&args.reading.search)?;
+        for note in recipe.keep_old_defaults(&loaded.scene) {
+            tell(&format!("note: {note}"));
+        }
+        (recipe, loaded)
+    } else {
+        Recipe::of(&args.scene, &args.reading, changes)?
+    };
+    recipe.apply(&mut loaded.scene);
+    let world = loaded.world().or_fail(SCENE)?;
+    let mut warnings = loaded.warnings_with(&world);
+    // What is odd about a scene is told when it is rendered; that what is explained is not what is in the file, here too.
+    warnings.retain(|report| report.warning.is_some_and(|code| code.starts_with("W10")));
+    say::reports(&warnings);
+    Ok(Asked { recipe, loaded, world })
 }
 
 /// May stdout be coloured?
@@ -62,35 +129,27 @@ fn colored() -> bool {
     say::colored(&std::io::stdout())
 }
 
-/// The settings of the command line.
-fn settings(loaded: &mut Loaded, args: &ExplainArgs) {
-    let render = &mut loaded.scene.render;
-    render.integrator = args.integrator.unwrap_or(render.integrator);
-    render.shadows = args.shadows.or(render.shadows);
-    render.spp = args.spp.unwrap_or(render.spp);
-    if let Some(size) = args.size {
-        loaded.scene.resize(size);
-    }
-}
-
 /// Fails with the names that there are, if a scene has no such object.
 fn known_object(world: &World, object: &str) -> Outcome {
-    let known = world.object_names();
-    if known.contains(&object) {
-        return Ok(());
-    }
-    let help = format!("objects: {}", known.into_iter().take(30).collect::<Vec<_>>().join(", "));
-    Err(Failure::new(USAGE, Report::error(format!("no object is called `{object}`")).help(help)))
+    known(object, "object", &world.object_names())
 }
 
-fn pixel(world: &World, loaded: &Loaded, args: &ExplainArgs, x: u32, y: u32) -> Result<Explanation, Failure> {
-    let found = explain(world, &loaded.scene, &args.scene, x, y);
-    found.map(|(explanation, _)| explanation).ok_or_else(|| {
-        let [width, height] = world.camera.size;
-        let message = format!("there is no pixel {x},{y} in a picture of {width} x {height}");
-        let help = format!("columns are 0 to {}, rows 0 to {}, from the top left", width - 1, height - 1);
-        Failure::new(USAGE, Report::error(message).help(help))
-    })
+/// The same of lights.
+fn known_light(asked: &Asked, light: &str) -> Outcome {
+    let names: Vec<String> = (0..asked.loaded.scene.lights.len()).map(|number| asked.names().light(number)).collect();
+    known(light, "light", &names.iter().map(String::as_str).collect::<Vec<_>>())
+}
+
+fn known(name: &str, what: &str, names: &[&str]) -> Outcome {
+    if names.contains(&name) {
+        return Ok(());
+    }
+    let help = if names.is_empty() {
+        format!("there is no {what} in this scene")
+    } else {
+        known_names(name, names.iter().copied())
+    };
+    Err(Failure::new(USAGE, Report::error(format!("no {what} is called `{name}`")).help(help)))
 }
 
 /// The JSON form.
@@ -100,7 +159,9 @@ fn json(explanation: &Explanation) -> String {
 }
 
 fn write(file: &Path, text: &str) -> Outcome {
-    disk::write(file, |out| out.write_all(text.as_bytes())).or_fail(FAILED)?;
-    eprintln!("{}", file.display());
+    write_text(file, text)?;
+    if !output::is_standard(file) {
+        tell(&plain(&file.display().to_string()));
+    }
     Ok(())
 }

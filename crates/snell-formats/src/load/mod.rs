@@ -4,15 +4,19 @@ mod models;
 mod pictures;
 
 use crate::driver::{self, Dialect, Driver};
+use crate::given::{Given, given};
 use crate::nff::{self, Nff};
-use crate::report::{Report, Source};
+use crate::report::{Report, Source, nearest};
 use crate::scene_file::{self, Syntax};
+use crate::text::decode;
 use crate::{builtin, disk};
 use models::ModelReader;
 use serde::{Deserialize, Serialize};
 use snell::geometry::bvh::Quality;
-use snell::scene::{Problem, Scene, Step, Warning};
+use snell::scene::{Integrator, Problem, Scene, Step, Warning};
 use snell::world::World;
+use std::collections::HashMap;
+use std::io::Read;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -28,6 +32,8 @@ pub struct LoadOptions {
     pub dialect: Option<Dialect>,
     /// Changes, `key=value`, in order.
     pub set: Vec<String>,
+    /// The model of light, if it is to be another than the scene's; some read more of the materials of models than others.
+    pub integrator: Option<Integrator>,
 }
 
 /// What a text is.
@@ -58,6 +64,8 @@ pub struct ModelFile {
 pub struct Loaded {
     /// The scene, every mesh with its triangles.
     pub scene: Scene,
+    /// The file that it was read from; `None` for a text that was in memory.
+    pub path: Option<PathBuf>,
     /// Its text, before any change.
     pub source: Source,
     /// What the text is.
@@ -70,38 +78,66 @@ pub struct Loaded {
     pub models: Vec<ModelFile>,
     /// For each mesh the file it comes from.
     pub mesh_paths: Vec<Option<PathBuf>>,
+    /// For each picture, by the name that the scene has for it, where it was found.
+    pub picture_paths: HashMap<String, PathBuf>,
     /// What is odd.
     pub warnings: Vec<Report>,
     places: Places,
 }
 
-/// Where the values of the scene stand in a text.
+/// Where the values of the scene stand in its text, or in the changes of that.
 #[derive(Clone, Debug)]
-enum Places {
-    Text(Source, Syntax),
+struct Places {
+    text: Text,
+    /// Steps to what was changed, and the text of the change.
+    changes: Vec<(Vec<Step>, Source)>,
+}
+
+#[derive(Clone, Debug)]
+enum Text {
+    File(Source, Syntax),
     Driver(Source, Box<Driver>),
-    Nff(Source, Box<Nff>),
+    Nff(Source, nff::Places),
 }
 
 impl Places {
-    fn find(&self, steps: &[Step]) -> Option<(&Source, Range<usize>)> {
-        match self {
-            Self::Text(source, syntax) => scene_file::place(steps, source, *syntax).map(|range| (source, range)),
-            Self::Driver(source, driver) => driver.place(steps).map(|range| (source, range)),
-            Self::Nff(source, nff) => nff.place(steps).map(|range| (source, range)),
-        }
+    fn find(&self, places: &[&[Step]]) -> Vec<Option<(&Source, Range<usize>)>> {
+        let changed = |steps: &[Step]| {
+            let of = |place: &[Step]| {
+                steps.starts_with(place)
+                    || place.split_last().is_some_and(|(last, list)| matches!(last, Step::Index(_)) && list == steps)
+            };
+            let change = self.changes.iter().rev().find(|(place, _)| of(place));
+            change.map(|(_, source)| (source, 0..source.text.len()))
+        };
+        let in_text: Vec<Option<(&Source, Range<usize>)>> = match &self.text {
+            Text::File(source, syntax) => {
+                let found = scene_file::places(places, source, *syntax);
+                found.into_iter().map(|range| Some((source, range?))).collect()
+            }
+            Text::Driver(source, driver) => places.iter().map(|steps| Some((source, driver.place(steps)?))).collect(),
+            Text::Nff(source, nff) => places.iter().map(|steps| Some((source, nff.find(steps)?))).collect(),
+        };
+        places.iter().zip(in_text).map(|(steps, found)| changed(steps).or(found)).collect()
     }
 
     fn put(&self, report: Report, steps: &[Step]) -> Report {
-        match self.find(steps) {
+        self.put_all(vec![(report, steps)]).remove(0)
+    }
+
+    fn put_all(&self, reports: Vec<(Report, &[Step])>) -> Vec<Report> {
+        let places: Vec<&[Step]> = reports.iter().map(|(_, steps)| *steps).collect();
+        let put = |((report, _), found): ((Report, &[Step]), Option<(&Source, Range<usize>)>)| match found {
             Some((source, range)) => report.at(source, range),
             None => report,
-        }
+        };
+        reports.into_iter().zip(self.find(&places)).map(put).collect()
     }
 }
 
 /// A name with one of these is meant as a file.
-const ENDINGS: &[&str] = &["txt", "toml", "json", "nff"];
+const ENDINGS: &[&str] =
+    &["txt", "toml", "json", "nff", "obj", "ply", "stl", "mtl", "png", "ppm", "exr", "npy", "glb", "gltf"];
 
 /// Reads a scene file, a driver, an NFF file, or a built-in scene.
 ///
@@ -115,21 +151,69 @@ pub fn load(name: &str, options: &LoadOptions) -> Result<Loaded, Vec<Report>> {
     if !path.exists() {
         return match builtin::find(name) {
             Ok(source) => load_text(source, Kind::Toml, Path::new("."), options),
-            Err(_) if path.extension().is_some_and(|e| ENDINGS.iter().any(|&ending| e == ending)) => {
-                Err(vec![Report::error(format!("there is no file `{name}`"))])
+            Err(_) if path.extension().is_some_and(|e| ENDINGS.iter().any(|ending| e.eq_ignore_ascii_case(ending))) => {
+                Err(vec![no_file(path)])
             }
             Err(report) => Err(vec![report]),
         };
     }
-    let source = disk::read_text(path, disk::MAX_SCENE_BYTES)?;
-    let kind = kind_of(path, &source.text);
+    let bytes =
+        disk::read(path, disk::MAX_SCENE_BYTES).map_err(|report| given_start(path).no_scene(name).unwrap_or(report))?;
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    load_text(source, kind, folder, options)
+    let mut loaded = load_bytes(name, path, &bytes, folder, options)?;
+    loaded.path = Some(path.to_owned());
+    Ok(loaded)
 }
 
-/// What a text is: by its ending, or by how it starts.
-fn kind_of(path: &Path, text: &str) -> Kind {
-    match path.extension().and_then(|e| e.to_str()) {
+/// Reads a scene from bytes, of a kind that the ending of `path` tells, or how they start.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_bytes(
+    name: &str,
+    path: &Path,
+    bytes: &[u8],
+    folder: &Path,
+    options: &LoadOptions,
+) -> Result<Loaded, Vec<Report>> {
+    if let Some(report) = given(path, bytes).no_scene(name) {
+        return Err(vec![report]);
+    }
+    let (source, warning) = decode(name, bytes);
+    let kind = kind_of(path, &source.text);
+    let loaded = load_text(source, kind, folder, options);
+    match (loaded, warning) {
+        (Ok(mut loaded), warning) => {
+            loaded.warnings.splice(0..0, warning);
+            Ok(loaded)
+        }
+        (Err(reports), warning) => Err(warning.into_iter().chain(reports).collect()),
+    }
+}
+
+/// There is no such file, but perhaps one of nearly that name.
+fn no_file(path: &Path) -> Report {
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let names =
+        std::fs::read_dir(folder).into_iter().flatten().flatten().filter_map(|e| e.file_name().into_string().ok());
+    let (names, wanted): (Vec<String>, _) = (names.collect(), path.file_name().unwrap_or_default().to_string_lossy());
+    let report = Report::error(format!("there is no file `{}`", path.display()));
+    match nearest(&wanted, names.iter().map(String::as_str)) {
+        Some(near) => report.help(format!("did you mean `{}`?", path.with_file_name(near).display())),
+        None => report,
+    }
+}
+
+/// What a file is that is too large to be read as a scene, by its first bytes.
+fn given_start(path: &Path) -> Given {
+    let mut start = Vec::new();
+    let read = std::fs::File::open(path).and_then(|file| file.take(4096).read_to_end(&mut start));
+    if read.is_ok() { given(path, &start) } else { Given::Text }
+}
+
+/// What a text is: by the ending of its name, or by how it starts.
+pub fn kind_of(path: &Path, text: &str) -> Kind {
+    match path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase).as_deref() {
         Some("toml") => Kind::Toml,
         Some("json") => Kind::Json,
         Some("txt") => Kind::Driver,
@@ -166,33 +250,39 @@ pub fn load_with(
 ) -> Result<Loaded, Vec<Report>> {
     let mut warnings = Vec::new();
     let mut dialect = None;
-    let (mut scene, places) = match kind {
+    let (mut scene, text) = match kind {
         Kind::Driver => {
             let mut driver = driver::parse(&source, options.dialect)?;
             dialect = Some(driver.dialect);
             warnings.append(&mut driver.warnings);
-            let scene = driver.scene_with_models();
-            let places = Places::Driver(source.clone(), Box::new(driver));
-            rewritten(scene, places, &source, &options.set)?
+            (driver.scene_with_models(), Text::Driver(source.clone(), Box::new(driver)))
         }
         Kind::Nff => {
-            let mut nff = nff::parse(&source)?;
-            warnings.append(&mut nff.warnings);
-            rewritten(nff.scene.clone(), Places::Nff(source.clone(), Box::new(nff)), &source, &options.set)?
+            let Nff { scene, warnings: mut odd, places } = nff::parse(&source)?;
+            warnings.append(&mut odd);
+            (scene, Text::Nff(source.clone(), places))
         }
-        Kind::Toml => changed(source.clone(), Syntax::Toml, &options.set)?,
-        Kind::Json => changed(source.clone(), Syntax::Json, &options.set)?,
+        Kind::Toml => (scene_file::parse(&source, Syntax::Toml)?, Text::File(source.clone(), Syntax::Toml)),
+        Kind::Json => (scene_file::parse(&source, Syntax::Json)?, Text::File(source.clone(), Syntax::Json)),
     };
+    let mut places = Places { text, changes: Vec::new() };
+    for change in &options.set {
+        let place = scene_file::set(&mut scene, change)?;
+        places.changes.push((place, Source::new("--set", change.as_str())));
+    }
     fill(&mut scene);
-    let mut reader = ModelReader::new(folder, &options.search, dialect, warnings);
+    scene.render.integrator = options.integrator.unwrap_or(scene.render.integrator);
+    let mut reader = ModelReader::new(folder, &options.search, dialect, scene.render.integrator, warnings);
     let mut loaded = Loaded {
         scene,
+        path: None,
         source,
         kind,
         dialect,
         folder: folder.to_owned(),
         models: Vec::new(),
         mesh_paths: Vec::new(),
+        picture_paths: HashMap::new(),
         warnings: Vec::new(),
         places,
     };
@@ -201,48 +291,31 @@ pub fn load_with(
         loaded.mesh_paths.push(path);
     }
     loaded.models = reader.files;
+    loaded.picture_paths = reader.pictures;
     loaded.warnings = reader.warnings;
     pictures::read(&mut loaded, &options.search)?;
     Ok(loaded)
 }
 
-/// What is no scene file is changed as the scene file that it could be.
-fn rewritten(scene: Scene, places: Places, source: &Source, set: &[String]) -> Result<(Scene, Places), Report> {
-    if set.is_empty() {
-        return Ok((scene, places));
-    }
-    let text = scene_file::to_text(&scene, Syntax::Toml)?;
-    changed(Source::new(format!("{} as a scene", source.name), text), Syntax::Toml, set)
-}
-
-fn changed(source: Source, syntax: Syntax, set: &[String]) -> Result<(Scene, Places), Report> {
-    let (mut source, mut syntax) = (source, syntax);
-    for change in set {
-        source = scene_file::set(&source, syntax, change)?;
-        syntax = Syntax::Toml;
-    }
-    Ok((scene_file::parse(&source, syntax)?, Places::Text(source, syntax)))
-}
-
 impl Loaded {
-    /// A problem of the scene, at its place in the text.
-    pub fn report(&self, problem: &Problem) -> Report {
-        let mut report = Report::error(problem.message.clone());
-        report.help.clone_from(&problem.help);
-        self.places.put(report, &problem.place)
+    /// All files that were read.
+    pub fn files(&self) -> impl Iterator<Item = &Path> {
+        self.path.iter().map(PathBuf::as_path).chain(self.models.iter().map(|file| file.path.as_path()))
     }
 
-    /// A warning of the scene, at its place in the text.
-    pub fn warning(&self, warning: &Warning) -> Report {
-        self.places.put(Report::warning(warning.code, warning.message.clone()), &warning.place)
+    /// Problems of the scene, each at its place in the text.
+    pub fn reports(&self, problems: &[Problem]) -> Vec<Report> {
+        let report =
+            |problem: &Problem| Report { help: problem.help.clone(), ..Report::error(problem.message.clone()) };
+        self.places.put_all(problems.iter().map(|problem| (report(problem), problem.place.as_slice())).collect())
     }
 
     /// All warnings, of the files and of the compiled scene, each at its place.
     pub fn warnings_with(&self, world: &World) -> Vec<Report> {
-        let located = world.warnings.iter().take(MOST_PROBLEMS).map(|w| self.warning(w));
-        let unlocated = world.warnings.iter().skip(MOST_PROBLEMS);
-        let unlocated = unlocated.map(|w| Report::warning(w.code, w.message.clone()));
-        self.warnings.iter().cloned().chain(located).chain(unlocated).collect()
+        let report = |warning: &Warning| Report::warning(warning.code, warning.message.clone());
+        let (located, others) = world.warnings.split_at(world.warnings.len().min(MOST_PROBLEMS));
+        let located = self.places.put_all(located.iter().map(|w| (report(w), w.place.as_slice())).collect());
+        self.warnings.iter().cloned().chain(located).chain(others.iter().map(report)).collect()
     }
 
     /// Compiles the scene.
@@ -259,7 +332,7 @@ impl Loaded {
     /// As [`world`](Self::world).
     pub fn build(&self, quality: Quality, threads: usize) -> Result<World, Vec<Report>> {
         World::build(&self.scene, quality, threads).map_err(|problems| {
-            let mut reports: Vec<Report> = problems.iter().take(MOST_PROBLEMS).map(|p| self.report(p)).collect();
+            let mut reports = self.reports(&problems[..problems.len().min(MOST_PROBLEMS)]);
             if problems.len() > MOST_PROBLEMS {
                 let more = problems.len() - MOST_PROBLEMS;
                 reports.push(Report::error(format!("{more} more problems like these")));

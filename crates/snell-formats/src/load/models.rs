@@ -1,13 +1,15 @@
 //! Models and their materials.
 
-use super::{Loaded, ModelFile, Places};
+use super::{Loaded, ModelFile};
 use crate::disk;
 use crate::driver::Dialect;
-use crate::model::{Mirror, MtlMaterial, MtlRule, ObjModel, find, parse_model, parse_mtl};
-use crate::report::Report;
+use crate::model::{Found, Mirror, Model, MtlMaterial, MtlRule, find, find_in, parse_model, parse_mtl, places};
+use crate::report::{Report, list};
+use crate::text::decode;
 use crate::texture::read_image;
 use snell::geometry::TriangleMesh;
-use snell::scene::{Material, Scene, Step, Texture, WarningCode};
+use snell::geometry::solid::structure;
+use snell::scene::{Integrator, Material, Mesh, Scene, Step, Texture, WarningCode};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -18,28 +20,48 @@ pub(super) struct ModelReader<'a> {
     search: &'a [PathBuf],
     rule: MtlRule,
     /// Drivers make the course's pictures.
-    draws_no_textures: bool,
-    objs: HashMap<PathBuf, (Arc<TriangleMesh>, Arc<Libraries>)>,
+    is_course: bool,
+    models: HashMap<PathBuf, Arc<Read>>,
     mtls: HashMap<PathBuf, Vec<MtlMaterial>>,
+    /// Where files are looked for that one in a folder names.
+    places: HashMap<PathBuf, Vec<PathBuf>>,
     /// Scene materials by model and slot, and the number that the next one of a name gets.
     named: HashMap<(PathBuf, String), String>,
     numbers: HashMap<String, usize>,
     pub files: Vec<ModelFile>,
+    /// Textures, by the names that the scene gets for them.
+    pub pictures: HashMap<String, PathBuf>,
     pub warnings: Vec<Report>,
 }
 
+/// A model that was read, with its libraries.
+struct Read {
+    mesh: Arc<TriangleMesh>,
+    libraries: Libraries,
+    has_normals: bool,
+    lost_uv: Option<Report>,
+}
+
 impl<'a> ModelReader<'a> {
-    pub fn new(folder: &'a Path, search: &'a [PathBuf], dialect: Option<Dialect>, warnings: Vec<Report>) -> Self {
+    pub fn new(
+        folder: &'a Path,
+        search: &'a [PathBuf],
+        dialect: Option<Dialect>,
+        integrator: Integrator,
+        warnings: Vec<Report>,
+    ) -> Self {
         Self {
             folder,
             search,
-            rule: rule(dialect),
-            draws_no_textures: dialect.is_some(),
-            objs: HashMap::new(),
+            rule: rule(dialect, integrator),
+            is_course: dialect.is_some(),
+            models: HashMap::new(),
             mtls: HashMap::new(),
+            places: HashMap::new(),
             named: HashMap::new(),
             numbers: HashMap::new(),
             files: Vec::new(),
+            pictures: HashMap::new(),
             warnings,
         }
     }
@@ -48,42 +70,48 @@ impl<'a> ModelReader<'a> {
     pub fn read_mesh(&mut self, loaded: &mut Loaded, index: usize) -> Result<Option<PathBuf>, Report> {
         let Some(file) = loaded.scene.meshes[index].file.clone() else { return Ok(None) };
         let place = [Step::from("mesh"), Step::from(index), Step::from("file")];
-        let found = find(&file, self.folder, self.search).map_err(|r| loaded.places.put(r, &place))?;
+        let found = self.find_model(&file).map_err(|r| loaded.places.put(r, &place))?;
         self.warnings.extend(found.warning.map(|w| loaded.places.put(w, &place)));
         let path = found.path;
-        if !self.objs.contains_key(&path) {
+        if !self.models.contains_key(&path) {
             let located = |r: Report| if r.place.is_some() { r } else { loaded.places.put(r, &place) };
             let bytes = self.read(&path)?;
-            let ObjModel { mesh, libraries, warnings } = parse_model(&path, &bytes).map_err(located)?;
+            let Model { mesh, libraries, has_normals, lost_uv, warnings } =
+                parse_model(&path, &bytes).map_err(located)?;
             self.warnings.extend(warnings);
-            let libraries = Arc::new(self.libraries(&libraries, &path)?);
-            self.objs.insert(path.clone(), (Arc::new(mesh), libraries));
+            let libraries = self.libraries(&libraries, &path)?;
+            self.models.insert(path.clone(), Arc::new(Read { mesh: Arc::new(mesh), libraries, has_normals, lost_uv }));
         }
-        let (mesh, libraries) = self.objs[&path].clone();
+        let read = Arc::clone(&self.models[&path]);
         if loaded.scene.meshes[index].material.is_none() {
-            for slot in &mesh.slots {
-                if loaded.scene.meshes[index].materials.contains_key(slot) {
-                    continue;
-                }
-                let key = (path.clone(), slot.clone());
-                if !self.named.contains_key(&key) {
-                    let found = self.material(slot, &path, &libraries, &loaded.places, &place)?;
-                    let material = found.material(self.rule);
-                    let name = self.add_material(&mut loaded.scene, &path, &found.name, material);
-                    if let Some(file) = &found.map_kd
-                        && let Err(why) = self.add_texture(&mut loaded.scene, &path, &name, file, &mesh)
-                    {
-                        let message = format!("the texture `{file}` is not drawn: {why}");
-                        self.warnings
-                            .push(loaded.places.put(Report::warning(WarningCode::TextureIgnored, message), &place));
-                    }
-                    self.named.insert(key.clone(), name);
-                }
-                loaded.scene.meshes[index].materials.insert(slot.clone(), self.named[&key].clone());
-            }
+            self.give_materials(loaded, index, &path, &read, &place)?;
         }
-        loaded.scene.meshes[index].geometry = Some(mesh);
+        if let Some(report) = &read.lost_uv {
+            // Without a texture nobody looks at them.
+            if is_textured(&loaded.scene, &loaded.scene.meshes[index]) {
+                return Err(report.clone());
+            }
+            let message = format!("{}; its face has no texture coordinates", report.message);
+            let warning = Report { warning: Some(WarningCode::NotDrawn.code()), message, ..report.clone() };
+            self.warnings.push(warning);
+        }
+        if read.has_normals && !self.is_course && loaded.scene.meshes[index].smooth_angle == 0.0 {
+            let message = format!("the normals of `{}` are not drawn: its faces are flat", path.display());
+            let help = "`smooth_angle = 60` in its [[mesh]] smooths all edges of less than 60 degrees";
+            self.warnings.push(loaded.places.put(Report::warning(WarningCode::NotDrawn, message).help(help), &place));
+        }
+        loaded.scene.meshes[index].geometry = Some(Arc::clone(&read.mesh));
         Ok(Some(path))
+    }
+
+    /// Finds a model that the scene names.
+    fn find_model(&mut self, file: &str) -> Result<Found, Report> {
+        let (folder, search) = (self.folder, self.search);
+        find_in(file, self.places_of(folder), search).map_or_else(|| find(file, folder, search), Ok)
+    }
+
+    fn places_of(&mut self, folder: &Path) -> &[PathBuf] {
+        self.places.entry(folder.to_owned()).or_insert_with(|| places(folder))
     }
 
     fn read(&mut self, path: &Path) -> Result<Vec<u8>, Report> {
@@ -92,35 +120,69 @@ impl<'a> ModelReader<'a> {
         Ok(bytes)
     }
 
-    /// The material that a model calls `slot`: from its libraries, else the only one of an `.mtl` of the same name, else
-    /// gray.
-    fn material(
+    /// Gives a mesh a material for each name that its model uses: from its libraries, else the only one of an `.mtl` of the same
+    /// name, else gray.
+    fn give_materials(
         &mut self,
-        slot: &str,
-        model: &Path,
-        libraries: &Libraries,
-        places: &Places,
+        loaded: &mut Loaded,
+        index: usize,
+        path: &Path,
+        read: &Read,
         place: &[Step],
-    ) -> Result<MtlMaterial, Report> {
-        if let Some(m) = libraries.materials.get(slot) {
-            return Ok(m.clone());
+    ) -> Result<(), Report> {
+        let own = &loaded.scene.meshes[index].materials;
+        let slots: Vec<String> = read.mesh.slots.iter().filter(|slot| !own.contains_key(*slot)).cloned().collect();
+        let unnamed = |slot: &&String| !self.named.contains_key(&(path.to_owned(), (*slot).clone()));
+        let new: Vec<String> = slots.iter().filter(unnamed).cloned().collect();
+        let (known, unknown): (Vec<&String>, Vec<&String>) =
+            new.iter().partition(|slot| read.libraries.materials.contains_key(*slot));
+        let mut added = Vec::new();
+        for slot in known {
+            let found = read.libraries.materials[slot].clone();
+            added.push(self.add(loaded, path, read, &found, place));
+            self.named.insert((path.to_owned(), slot.clone()), added[added.len() - 1].clone());
         }
-        let missing = &libraries.missing;
+        if !unknown.is_empty() {
+            let only = self.only_material(path)?;
+            if only.is_none() {
+                let report =
+                    Report::warning(WarningCode::NoMaterial, why_gray(path, &unknown, &read.libraries.missing));
+                self.warnings.push(loaded.places.put(report, place));
+            }
+            let name = self.add(loaded, path, read, &only.unwrap_or_else(MtlMaterial::gray), place);
+            for slot in unknown {
+                self.named.insert((path.to_owned(), slot.clone()), name.clone());
+            }
+            added.push(name);
+        }
+        make_solid(&mut loaded.scene, &added, &read.mesh);
+        for slot in slots {
+            let name = self.named[&(path.to_owned(), slot.clone())].clone();
+            loaded.scene.meshes[index].materials.insert(slot, name);
+        }
+        Ok(())
+    }
+
+    /// The only material of an `.mtl` that is named like the model.
+    fn only_material(&mut self, model: &Path) -> Result<Option<MtlMaterial>, Report> {
         let same_name = model.with_extension("mtl").file_name().map(|n| n.to_string_lossy().into_owned());
-        if let Some(path) = self.find_library(&same_name.unwrap_or_default(), model)
-            && let [only] = self.read_library(&path)?
+        let Some(path) = self.find_library(&same_name.unwrap_or_default(), model) else { return Ok(None) };
+        Ok(match self.read_library(&path)? {
+            [only] => Some(only.clone()),
+            _ => None,
+        })
+    }
+
+    /// Adds a material of a model to the scene, with its texture; returns its name there.
+    fn add(&mut self, loaded: &mut Loaded, path: &Path, read: &Read, found: &MtlMaterial, place: &[Step]) -> String {
+        let name = self.add_material(&mut loaded.scene, path, &found.name, found.material(self.rule));
+        if let Some(file) = &found.map_kd
+            && let Err(why) = self.add_texture(&mut loaded.scene, path, &name, file, &read.mesh)
         {
-            return Ok(only.clone());
+            let message = format!("the texture `{file}` is not drawn: {why}");
+            self.warnings.push(loaded.places.put(Report::warning(WarningCode::TextureIgnored, message), place));
         }
-        let why = match (slot, missing.is_empty()) {
-            (_, false) => format!("its material library {} is not there", missing.join(", ")),
-            ("", true) => "it names no material".to_owned(),
-            (slot, true) => format!("no library has its material `{slot}`"),
-        };
-        let shown = model.display();
-        let report = Report::warning(WarningCode::NoMaterial, format!("`{shown}` is drawn gray: {why}"));
-        self.warnings.push(places.put(report, place));
-        Ok(MtlMaterial::gray())
+        name
     }
 
     /// Gives a material of a model its texture. Fails with why not.
@@ -132,7 +194,7 @@ impl<'a> ModelReader<'a> {
         file: &str,
         mesh: &TriangleMesh,
     ) -> Result<(), String> {
-        if self.draws_no_textures {
+        if self.is_course {
             return Err("the course's programs drew only the colours of its material".to_owned());
         }
         if mesh.face_uvs.is_empty() {
@@ -145,6 +207,7 @@ impl<'a> ModelReader<'a> {
         self.read(&path).map_err(|report| report.message)?;
         let pixels = Some(Arc::new(image));
         let name = path.display().to_string();
+        self.pictures.insert(name.clone(), path);
         let texture = Texture { checker: None, image: Some(name), repeat: [1.0, 1.0], linear: false, pixels };
         scene.textures.insert(material.to_owned(), texture);
         scene.materials[material].texture = Some(material.to_owned());
@@ -174,8 +237,10 @@ impl<'a> ModelReader<'a> {
     }
 
     fn find_library(&mut self, name: &str, model: &Path) -> Option<PathBuf> {
-        let beside = model.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        let found = find(name, beside, self.search).or_else(|_| find(name, self.folder, &[])).ok()?;
+        let beside = model.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new(".")).to_owned();
+        let (folder, search) = (self.folder, self.search);
+        let found = find_in(name, self.places_of(&beside), search);
+        let found = found.or_else(|| find_in(name, self.places_of(folder), &[]))?;
         if !self.mtls.contains_key(&found.path) {
             self.warnings.extend(found.warning);
         }
@@ -184,11 +249,27 @@ impl<'a> ModelReader<'a> {
 
     fn read_library(&mut self, path: &Path) -> Result<&[MtlMaterial], Report> {
         if !self.mtls.contains_key(path) {
-            let (read, warnings) = parse_mtl(&disk::text(path, &self.read(path)?))?;
+            let (source, warning) = decode(&path.display().to_string(), &self.read(path)?);
+            let (read, warnings) = parse_mtl(&source)?;
+            self.warnings.extend(warning);
             self.warnings.extend(warnings);
+            if !self.rule.real_optics {
+                self.beyond_the_course(path, &read);
+            }
             self.mtls.insert(path.to_owned(), read);
         }
         Ok(&self.mtls[path])
+    }
+
+    /// Warns of what the materials of a library have and this model of light does not draw.
+    fn beyond_the_course(&mut self, path: &Path, materials: &[MtlMaterial]) {
+        let mut what: Vec<&str> = materials.iter().flat_map(MtlMaterial::beyond_the_course).collect();
+        what.sort_unstable();
+        what.dedup();
+        if !what.is_empty() {
+            let message = format!("{} of `{}` are drawn by `whitted` only", list(what), path.display());
+            self.warnings.push(Report::warning(WarningCode::NotInThisModel, message));
+        }
     }
 
     /// Adds a material under a name that tells where it is from.
@@ -217,13 +298,46 @@ struct Libraries {
     missing: Vec<String>,
 }
 
+/// Why a model is drawn gray.
+fn why_gray(model: &Path, slots: &[&String], missing: &[String]) -> String {
+    let why = match (slots, missing.is_empty()) {
+        (_, false) => format!("its material library {} is not there", list(missing.iter().map(String::as_str))),
+        ([only], true) if only.is_empty() => "it names no material".to_owned(),
+        ([only], true) => format!("no library has its material `{only}`"),
+        (slots, true) => {
+            let names: Vec<String> = slots.iter().map(|slot| format!("`{slot}`")).collect();
+            format!("no library has its materials {}", list(names.iter().map(String::as_str)))
+        }
+    };
+    format!("`{}` is drawn gray: {why}", model.display())
+}
+
+/// Does the mesh have a material with a texture?
+fn is_textured(scene: &Scene, mesh: &Mesh) -> bool {
+    let mut names = mesh.material.iter().chain(mesh.materials.values().filter(|_| mesh.material.is_none()));
+    names.any(|name| scene.materials.get(name).is_some_and(|m| m.texture.is_some()))
+}
+
+/// What light goes through is a solid where the mesh is one and all of it has one index; else it stays panes.
+fn make_solid(scene: &mut Scene, materials: &[String], mesh: &TriangleMesh) {
+    let through: Vec<&String> = materials.iter().filter(|name| scene.materials[*name].is_transparent()).collect();
+    let index = |name: &String| scene.materials[name].eta;
+    let Some(first) = through.first() else { return };
+    if through.iter().all(|name| index(name) == index(first)) && structure(mesh).is_solid() {
+        for name in through {
+            scene.materials[name].thickness = None;
+        }
+    }
+}
+
 /// How the year of a driver reads the materials of polygons; scene files take what the file says.
-fn rule(dialect: Option<Dialect>) -> MtlRule {
+fn rule(dialect: Option<Dialect>, integrator: Integrator) -> MtlRule {
     let mirror = match dialect {
         Some(Dialect::Course2018) => Mirror::One,
         Some(Dialect::Lecture) => Mirror::KrOrOne,
         Some(Dialect::Course2019 | Dialect::Course2020) => Mirror::KsIfIllum3,
         None => Mirror::KrOrKsIfIllum3,
     };
-    MtlRule { mirror, default_exponent: dialect.map_or(16.0, Dialect::default_exponent) }
+    let real_optics = dialect.is_none() && integrator == Integrator::Whitted;
+    MtlRule { mirror, default_exponent: dialect.map_or(16.0, Dialect::default_exponent), real_optics }
 }

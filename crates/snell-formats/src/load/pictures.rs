@@ -43,6 +43,7 @@ fn read_one(
     let sha256 = disk::sha256([&disk::read(&found.path, disk::MAX_MODEL_BYTES)?]);
     let warning = found.warning.map(put);
     loaded.warnings.extend(warning);
+    loaded.picture_paths.insert(file.to_owned(), found.path.clone());
     loaded.models.push(ModelFile { path: found.path, sha256 });
     Ok(Arc::new(image))
 }

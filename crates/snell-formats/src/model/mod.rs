@@ -9,30 +9,59 @@ mod stl;
 mod write;
 
 pub use mtl::{Mirror, MtlMaterial, MtlRule, parse_mtl};
-pub use obj::{ObjModel, parse_obj};
+pub use obj::parse_obj;
 pub use ply::parse_ply;
-pub use search::{Found, find};
+pub use search::{Found, find, find_in, places};
+pub(crate) use stl::is_binary_stl;
 pub use stl::parse_stl;
-pub use write::write_obj;
+pub use write::{PLY_HEAD, write_obj, write_ply};
 
-use crate::disk;
+use crate::given::{Given, given};
 use crate::report::Report;
+use crate::text::decode;
 use snell::geometry::TriangleMesh;
+use snell::scene::WarningCode;
 use std::path::Path;
 
-/// Reads a model by the ending of its name: `.obj`, `.ply` or `.stl`. Materials are left to those who draw it.
+/// What a model file says.
+#[derive(Clone, Debug, Default)]
+pub struct Model {
+    /// The triangles. Slot names are those of OBJ's `usemtl`; faces before the first, and those of other formats, have the empty
+    /// name.
+    pub mesh: TriangleMesh,
+    /// Files of materials that it names, each once.
+    pub libraries: Vec<String>,
+    /// Does it have normals? They are not drawn: smoothing is the scene's own.
+    pub has_normals: bool,
+    /// A corner whose texture coordinates are not in the file. Its faces have none, which matters where a texture is drawn.
+    pub lost_uv: Option<Report>,
+    /// What is odd, or not drawn.
+    pub warnings: Vec<Report>,
+}
+
+/// Reads a model, by its content or the ending of its name: `.obj`, `.ply` or `.stl`. Materials are left to those who draw it.
 ///
 /// # Errors
 /// Another ending, and what the readers do not take.
-pub fn parse_model(path: &Path, bytes: &[u8]) -> Result<ObjModel, Report> {
+pub fn parse_model(path: &Path, bytes: &[u8]) -> Result<Model, Report> {
     let name = path.display().to_string();
+    let what = given(path, bytes);
     let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
-    let plain = |mesh| ObjModel { mesh, libraries: Vec::new(), warnings: Vec::new() };
-    match &*ending {
-        "obj" => parse_obj(&disk::text(path, bytes)),
-        "ply" => parse_ply(&name, bytes).map(plain),
-        "stl" => parse_stl(&name, bytes).map(plain),
-        _ => Err(Report::error(format!("`{name}` is no model: models end in .obj, .ply or .stl"))),
+    match (what, &*ending) {
+        (Given::Model(_), _) if bytes.starts_with(b"ply") => parse_ply(&name, bytes),
+        (Given::Model(_), _) if is_binary_stl(bytes) => parse_stl(&name, bytes),
+        (Given::Model(_), "ply") => parse_ply(&name, bytes),
+        (Given::Model(_), "stl") => parse_stl(&name, bytes),
+        (Given::Model(_), "obj") => {
+            let (source, warning) = decode(&name, bytes);
+            let mut model = parse_obj(&source)?;
+            model.warnings.extend(warning);
+            Ok(model)
+        }
+        (what, _) => {
+            let what = what.words().map_or(String::new(), |what| format!(" but {what}"));
+            Err(Report::error(format!("`{name}` is no model{what}: models end in .obj, .ply or .stl")))
+        }
     }
 }
 
@@ -41,4 +70,18 @@ fn without_materials(mut mesh: TriangleMesh) -> TriangleMesh {
     mesh.face_slots = vec![0; mesh.faces.len()];
     mesh.slots = vec![String::new()];
     mesh
+}
+
+/// W109 about things that are read but not drawn, each once; none if there are none.
+fn not_drawn<'a>(name: &str, things: impl IntoIterator<Item = &'a str>) -> Option<Report> {
+    let mut named: Vec<&str> = Vec::new();
+    for thing in things {
+        if !named.contains(&thing) {
+            named.push(thing);
+        }
+    }
+    (!named.is_empty()).then(|| {
+        let message = format!("`{name}` has more than is drawn: {}", crate::report::list(named));
+        Report::warning(WarningCode::NotDrawn, message)
+    })
 }

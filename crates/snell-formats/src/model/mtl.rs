@@ -1,5 +1,6 @@
 //! Wavefront MTL: materials, read with the rule of the year.
 
+use super::not_drawn;
 use crate::report::{Report, Source};
 use crate::words::{Line, Word, lines, number};
 use snell::film::Rgb;
@@ -11,12 +12,18 @@ pub struct MtlMaterial {
     /// After `newmtl`.
     pub name: String,
     ka: Rgb,
-    kd: Rgb,
+    kd: Option<Rgb>,
     ks: Rgb,
     kr: Option<Rgb>,
+    /// `Ke`.
+    emission: Rgb,
     exponent: Option<f64>,
     /// `illum 3`.
     mirrors: bool,
+    /// `d`, or 1 − `Tr`.
+    opacity: Option<f64>,
+    /// `Ni`.
+    eta: Option<f64>,
     /// The picture of `map_Kd`, which colours the diffuse part, by the name that the file gives it; without options.
     pub map_kd: Option<String>,
 }
@@ -28,6 +35,8 @@ pub struct MtlRule {
     pub mirror: Mirror,
     /// Exponent of the highlight where the file has none.
     pub default_exponent: f64,
+    /// Does light go through what is not opaque, and does it come from what emits it? Not in the models of the course.
+    pub real_optics: bool,
 }
 
 /// Where the mirror coefficient of a polygon comes from.
@@ -46,10 +55,19 @@ pub enum Mirror {
 impl MtlMaterial {
     /// The gray of a model without a material.
     pub fn gray() -> Self {
-        Self { name: "gray".to_owned(), ka: Rgb::gray(0.2), kd: Rgb::gray(0.5), ks: Rgb::gray(0.5), ..Self::default() }
+        let half = Rgb::gray(0.5);
+        Self { name: "gray".to_owned(), ka: Rgb::gray(0.2), kd: Some(half), ks: half, ..Self::default() }
     }
 
-    /// The material by the rule of a year. Polygons are opaque.
+    /// What the file says of it that only real optics draws.
+    pub fn beyond_the_course(&self) -> Vec<&'static str> {
+        let through = self.opacity.is_some_and(|opacity| opacity < 1.0).then_some("`d` or `Tr`");
+        let glow = (self.emission != Rgb::gray(0.0)).then_some("`Ke`");
+        through.into_iter().chain(glow).collect()
+    }
+
+    /// The material by the rule of a year. Where light goes through, it goes through panes without thickness: whether a mesh is a
+    /// solid, its material does not know.
     pub fn material(&self, rule: MtlRule) -> Material {
         let by_illum = if self.mirrors { self.ks } else { Rgb::gray(0.0) };
         let kr = match rule.mirror {
@@ -58,24 +76,38 @@ impl MtlMaterial {
             Mirror::KsIfIllum3 => by_illum,
             Mirror::KrOrKsIfIllum3 => self.kr.unwrap_or(by_illum),
         };
-        Material {
+        // A map without a colour is multiplied by nothing.
+        let without = if self.map_kd.is_some() { 1.0 } else { 0.0 };
+        let mut material = Material {
             ka: self.ka,
-            kd: self.kd,
+            kd: self.kd.unwrap_or(Rgb::gray(without)),
             ks: self.ks,
             kr,
             spow: self.exponent.unwrap_or(rule.default_exponent),
             ..Material::default()
+        };
+        if rule.real_optics {
+            material.emission = self.emission;
+            if let Some(opacity) = self.opacity.filter(|&opacity| opacity < 1.0) {
+                material.ko = Rgb::gray(opacity);
+                material.eta = self.eta.unwrap_or(1.0);
+                material.thickness = Some(0.0);
+            }
         }
+        material
     }
 }
 
 /// Reads an MTL file: the materials, and warnings about what is not drawn.
+///
+/// `d` (1 is opaque) and `Tr` = 1 − `d` are one thing; where both are given, `d` counts.
 ///
 /// # Errors
 /// A number that is none, or a setting before the first `newmtl`.
 pub fn parse_mtl(source: &Source) -> Result<(Vec<MtlMaterial>, Vec<Report>), Report> {
     let mut materials: Vec<MtlMaterial> = Vec::new();
     let mut warnings = Vec::new();
+    let mut ignored: Vec<String> = Vec::new();
     for line in lines(source) {
         let keyword = line.keyword.text;
         if keyword == "newmtl" {
@@ -87,18 +119,46 @@ pub fn parse_mtl(source: &Source) -> Result<(Vec<MtlMaterial>, Vec<Report>), Rep
         let Some(material) = materials.last_mut() else {
             return Err(line.error(format!("`{keyword}` stands before the first `newmtl`")));
         };
+        let mut ignore = |what: String| {
+            if !ignored.contains(&what) {
+                ignored.push(what);
+            }
+        };
         match keyword {
             "Ka" => material.ka = color(&line)?,
-            "Kd" => material.kd = color(&line)?,
+            "Kd" => material.kd = Some(color(&line)?),
             "Ks" => material.ks = color(&line)?,
             "Kr" => material.kr = Some(color(&line)?),
-            "Ns" => material.exponent = Some(single(&line)?),
+            "Ke" => material.emission = color(&line)?,
+            "Ns" => material.exponent = Some(exponent(&line)?),
+            "Ni" => {
+                let [eta] = line.exactly("Ni index_of_refraction")?;
+                // Some exporters write 0 for what is not transparent.
+                material.eta = INDICES.contains(&eta).then_some(eta);
+                if material.eta.is_none() && eta != 0.0 {
+                    ignore(format!("`Ni {eta}`"));
+                }
+            }
+            "d" if line.rest.first().is_some_and(|w| w.text == "-halo") => ignore("`d -halo`".to_owned()),
+            "d" => material.opacity = Some(share(&line)?),
+            "Tr" => {
+                let through = share(&line)?;
+                material.opacity = material.opacity.or(Some(1.0 - through));
+            }
+            "Tf" => {
+                // The colour of what goes through; without spectra and CIEXYZ, which nobody writes.
+                if !line.rest.iter().all(|word| number(word) == Some(1.0)) {
+                    ignore("`Tf`".to_owned());
+                }
+            }
             "illum" => {
                 let [illum] = line.exactly("illum number")?;
                 material.mirrors = illum == 3.0;
+                if illum > 3.0 {
+                    ignore(format!("`illum {illum}`"));
+                }
             }
-            // Read by no integrator yet: emission, opacity, index, and their relatives in newer exporters.
-            "Ke" | "Ni" | "d" | "Tr" | "Tf" | "Pr" | "Pm" | "Ps" | "Pc" | "Pcr" | "aniso" | "anisor" | "sharpness" => {}
+            "Pr" | "Pm" | "Ps" | "Pc" | "Pcr" | "aniso" | "anisor" | "sharpness" => ignore(format!("`{keyword}`")),
             "map_Kd" | "map_kd" => {
                 let Map { file, options } = Map::of(&line);
                 if let Some(options) = options {
@@ -108,7 +168,7 @@ pub fn parse_mtl(source: &Source) -> Result<(Vec<MtlMaterial>, Vec<Report>), Rep
                 material.map_kd = Some(file.to_owned()).filter(|file| !file.is_empty());
             }
             _ if keyword.starts_with("map_") || matches!(keyword, "bump" | "disp" | "decal" | "refl" | "norm") => {
-                warnings.push(not_drawn(&line, Map::of(&line).file));
+                warnings.push(map_not_drawn(&line, Map::of(&line).file));
             }
             _ => {
                 let message = format!("unknown keyword `{keyword}` in a material: line ignored");
@@ -116,8 +176,12 @@ pub fn parse_mtl(source: &Source) -> Result<(Vec<MtlMaterial>, Vec<Report>), Rep
             }
         }
     }
+    warnings.extend(not_drawn(&source.name, ignored.iter().map(String::as_str)));
     Ok((materials, warnings))
 }
+
+/// Indices that real optics takes.
+const INDICES: std::ops::RangeInclusive<f64> = 1e-3..=1e3;
 
 /// What stands behind the keyword of a texture.
 #[derive(Debug, PartialEq)]
@@ -152,7 +216,7 @@ impl<'a> Map<'a> {
     }
 }
 
-fn not_drawn(line: &Line<'_>, file: &str) -> Report {
+fn map_not_drawn(line: &Line<'_>, file: &str) -> Report {
     let folder = std::path::Path::new(&*line.source.name).parent().unwrap_or(std::path::Path::new(""));
     let missing = if folder.join(file).is_file() { "" } else { ", and the file is missing" };
     let message = format!("the texture `{file}` is not drawn: only the colours of its material are{missing}");
@@ -160,7 +224,7 @@ fn not_drawn(line: &Line<'_>, file: &str) -> Report {
 }
 
 fn color(line: &Line<'_>) -> Result<Rgb, Report> {
-    let expected = "Ka, Kd, Ks or Kr, and red green blue, or one number for gray";
+    let expected = "Ka, Kd, Ks, Kr or Ke, and red green blue, or one number for gray";
     let numbers = line.numbers(expected)?;
     if let Some(value) = numbers.iter().find(|v| v.abs() > LARGEST_NUMBER) {
         return Err(line.error(format!("expected numbers between -1e15 and 1e15, read {value}")));
@@ -172,12 +236,21 @@ fn color(line: &Line<'_>) -> Result<Rgb, Report> {
     }
 }
 
-fn single(line: &Line<'_>) -> Result<f64, Report> {
+fn exponent(line: &Line<'_>) -> Result<f64, Report> {
     let [exponent] = line.exactly("Ns exponent")?;
     if (0.0..=LARGEST_NUMBER).contains(&exponent) {
         return Ok(exponent);
     }
     Err(line.error(format!("an exponent is between 0 and 1e15, read {exponent}")))
+}
+
+/// Of `d` and `Tr`.
+fn share(line: &Line<'_>) -> Result<f64, Report> {
+    let [share] = line.exactly("d or Tr, and a number from 0 to 1")?;
+    if (0.0..=1.0).contains(&share) {
+        return Ok(share);
+    }
+    Err(line.error(format!("`{}` is between 0 and 1, read {share}", line.keyword.text)))
 }
 
 #[cfg(test)]
@@ -193,15 +266,51 @@ mod tests {
         let (materials, warnings) = parse_mtl(&Source::new("m.mtl", TWO)).unwrap();
         assert!(warnings.is_empty());
         assert_eq!(materials[0].name, "my wall");
-        let kr = |i: usize, mirror| materials[i].material(MtlRule { mirror, default_exponent: 19.0 }).kr.to_array();
+        let kr = |i: usize, mirror| {
+            materials[i].material(MtlRule { mirror, default_exponent: 19.0, real_optics: false }).kr.to_array()
+        };
         let (red, one, half) = ([1.0, 0.0, 0.0], [1.0; 3], [0.5; 3]);
         assert_eq!((kr(0, Mirror::One), kr(1, Mirror::One)), (one, one));
         assert_eq!((kr(0, Mirror::KrOrOne), kr(1, Mirror::KrOrOne)), (one, half));
         assert_eq!((kr(0, Mirror::KsIfIllum3), kr(1, Mirror::KsIfIllum3)), (red, [0.0; 3]));
         assert_eq!((kr(0, Mirror::KrOrKsIfIllum3), kr(1, Mirror::KrOrKsIfIllum3)), (red, half));
-        let rule = MtlRule { mirror: Mirror::One, default_exponent: 19.0 };
+        let rule = MtlRule { mirror: Mirror::One, default_exponent: 19.0, real_optics: false };
         assert_eq!((materials[0].material(rule).spow, materials[1].material(rule).spow), (96.0, 19.0));
         assert_eq!(materials[0].material(rule).kd.to_array(), [0.5; 3]);
+    }
+
+    #[test]
+    fn what_goes_through_and_what_glows() {
+        let text = "newmtl a\nd 0.25\nNi 1.5\nKe 1 2 3\nnewmtl b\nTr 0.25\nNi 0\nnewmtl c\nTr 1\nd 1\nmap_Kd x.png\n\
+                    newmtl d\nd 0.5\nTr 0.5\nKd .1 .1 .1\nmap_Kd x.png\nnewmtl e\nTf 1 1 1\nillum 2\nNi 1.45\n";
+        let (materials, warnings) = parse_mtl(&Source::new("m.mtl", text)).unwrap();
+        assert!(warnings.is_empty(), "{warnings:?}");
+        let rule = |real_optics| MtlRule { mirror: Mirror::KrOrKsIfIllum3, default_exponent: 16.0, real_optics };
+        let glass = |i: usize| {
+            let m = materials[i].material(rule(true));
+            (m.ko.r, m.eta, m.thickness.is_some())
+        };
+        let opaque = (1.0, 1.0, false);
+        assert_eq!(
+            [0, 1, 2, 3, 4].map(glass),
+            [(0.25, 1.5, true), (0.75, 1.0, true), opaque, (0.5, 1.0, true), opaque]
+        );
+        assert_eq!(materials[0].material(rule(true)).emission, Rgb::new(1.0, 2.0, 3.0));
+        let kd = |i: usize| materials[i].material(rule(true)).kd.r;
+        assert_eq!([2, 3, 4].map(kd), [1.0, 0.1, 0.0], "a map alone shows as it is");
+        let course = materials[0].material(rule(false));
+        assert!(course.ko == Rgb::gray(1.0) && course.emission == Rgb::gray(0.0));
+        assert_eq!(materials[0].beyond_the_course(), ["`d` or `Tr`", "`Ke`"]);
+        let (_, warnings) =
+            parse_mtl(&Source::new("m.mtl", "newmtl a\nTf .5 1 1\nPm 1\nillum 7\nPm 0\nNi -3\nd -halo 1\n")).unwrap();
+        assert!(
+            warnings.len() == 1 && warnings[0].message.contains("`Tf`, `Pm`, `illum 7`, `Ni -3`, `d -halo`"),
+            "{warnings:?}"
+        );
+        for (line, message) in [("d 2", "between 0 and 1, read 2"), ("Tr x", "read `x`"), ("d", "read 0")] {
+            let report = parse_mtl(&Source::new("m.mtl", format!("newmtl a\n{line}\n"))).unwrap_err();
+            assert!(report.message.contains(message), "{report}");
+        }
     }
 
     #[test]

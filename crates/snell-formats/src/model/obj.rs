@@ -1,39 +1,45 @@
 //! Wavefront OBJ: vertices, texture coordinates, faces and the names of their materials.
 
 use super::polygon::Polygons;
+use super::{Model, not_drawn};
 use crate::report::{Report, Source};
 use crate::words::{Word, number, words};
-use snell::geometry::{NO_UVS, TriangleMesh, Vec3};
+use snell::geometry::{NO_UVS, Vec3};
 use snell::scene::WarningCode;
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
-/// What an OBJ file says.
-#[derive(Clone, Debug)]
-pub struct ObjModel {
-    /// The triangles. Slot names are those of `usemtl`; faces before the first have the empty name.
-    pub mesh: TriangleMesh,
-    /// Files named by `mtllib`.
-    pub libraries: Vec<String>,
-    /// Odd lines.
-    pub warnings: Vec<Report>,
-}
+/// Keywords that say nothing about the surface as Snell draws it: names of parts and groups of smoothing, which is the scene's
+/// own.
+const IGNORED: &[&str] = &["o", "g", "s", "mg", "usemap", "maplib", "shadow_obj", "trace_obj"];
 
-/// Keywords that say nothing about the surface as Snell draws it: normals (smoothing is the scene's own), groups, lines
-/// and points.
-const IGNORED: &[&str] = &["vn", "vp", "o", "g", "s", "l", "p", "mg", "usemap", "maplib", "shadow_obj", "trace_obj"];
+/// Keywords of what is not drawn, with its name.
+const NOT_DRAWN: &[(&str, &str)] = &[
+    ("l", "lines (`l`)"),
+    ("p", "points (`p`)"),
+    ("vp", "curves and free-form surfaces"),
+    ("cstype", "curves and free-form surfaces"),
+    ("deg", "curves and free-form surfaces"),
+    ("curv", "curves and free-form surfaces"),
+    ("curv2", "curves and free-form surfaces"),
+    ("surf", "curves and free-form surfaces"),
+    ("parm", "curves and free-form surfaces"),
+    ("trim", "curves and free-form surfaces"),
+    ("end", "curves and free-form surfaces"),
+];
+
+/// So many unknown keywords are named; a file of the wrong kind has thousands.
+const NAMED: usize = 5;
 
 /// Reads an OBJ file. Polygons become triangles. A face has texture coordinates if each of its corners has; of `vt u v w`
 /// the third number is not kept.
 ///
 /// # Errors
-/// A number that is none, an index of a vertex or of texture coordinates out of range, a face with fewer than three
-/// corners.
-pub fn parse_obj(source: &Source) -> Result<ObjModel, Report> {
+/// A number that is none, an index of a vertex out of range, a face with fewer than three corners.
+pub fn parse_obj(source: &Source) -> Result<Model, Report> {
     let mut reader = Reader {
         source,
-        mesh: TriangleMesh::default(),
-        libraries: Vec::new(),
+        model: Model::default(),
         slots: HashMap::new(),
         slot: None,
         later: Vec::new(),
@@ -41,7 +47,8 @@ pub fn parse_obj(source: &Source) -> Result<ObjModel, Report> {
         corner_uvs: Vec::new(),
         ends: Vec::new(),
         unknown: HashSet::new(),
-        warnings: Vec::new(),
+        not_drawn: Vec::new(),
+        libraries: HashSet::new(),
     };
     let mut start = 0;
     let mut line: Vec<Word<'_>> = Vec::new();
@@ -63,20 +70,20 @@ pub fn parse_obj(source: &Source) -> Result<ObjModel, Report> {
 
 struct Reader<'a> {
     source: &'a Source,
-    mesh: TriangleMesh,
-    libraries: Vec<String>,
+    model: Model,
     slots: HashMap<String, u32>,
     /// Slot of the current `usemtl`.
     slot: Option<u32>,
-    /// What a face named before it came, to be checked at the end.
-    later: Vec<(Kind, u32, Range<usize>)>,
+    /// What a face named before it came, to be checked at the end, and by which corner.
+    later: Vec<(Kind, u32, Range<usize>, usize)>,
     /// Corners of all polygons, and where each ends, with its slot. They become triangles when all vertices are there.
     corners: Vec<u32>,
     /// The texture coordinates of each corner, or [`NO_UV`].
     corner_uvs: Vec<u32>,
     ends: Vec<(usize, u32)>,
     unknown: HashSet<String>,
-    warnings: Vec<Report>,
+    not_drawn: Vec<&'static str>,
+    libraries: HashSet<String>,
 }
 
 /// What corners of faces name by numbers.
@@ -113,19 +120,33 @@ impl Reader<'_> {
                 Ok(())
             }
             "mtllib" => {
-                self.libraries.push(joined(self.source, rest));
+                let name = joined(self.source, rest);
+                if self.libraries.insert(name.clone()) {
+                    self.model.libraries.push(name);
+                }
+                Ok(())
+            }
+            "vn" => {
+                self.model.has_normals = true;
                 Ok(())
             }
             word if IGNORED.contains(&word) => Ok(()),
             word => {
-                // Once per word: a file of the wrong kind has thousands.
-                if self.unknown.len() < 5 && self.unknown.insert(word.to_owned()) {
-                    let message = format!("unknown keyword `{word}` in a model: such lines are ignored");
-                    let report = Report::warning(WarningCode::UnknownKeyword, message);
-                    self.warnings.push(report.at(self.source, keyword.range.clone()));
+                match NOT_DRAWN.iter().find(|(known, _)| *known == word) {
+                    Some((_, what)) if self.not_drawn.contains(what) => {}
+                    Some((_, what)) => self.not_drawn.push(what),
+                    None => self.unknown_keyword(keyword),
                 }
                 Ok(())
             }
+        }
+    }
+
+    fn unknown_keyword(&mut self, keyword: &Word<'_>) {
+        if self.unknown.insert(keyword.text.to_owned()) && self.unknown.len() <= NAMED {
+            let message = format!("unknown keyword `{}` in a model: such lines are ignored", keyword.text);
+            let report = Report::warning(WarningCode::UnknownKeyword, message);
+            self.model.warnings.push(report.at(self.source, keyword.range.clone()));
         }
     }
 
@@ -134,7 +155,7 @@ impl Reader<'_> {
             return Err(self.error(keyword, format!("`v` takes 3 numbers, read {}", rest.len())));
         };
         let vertex = Vec3::new(self.coordinate(x)?, self.coordinate(y)?, self.coordinate(z)?);
-        self.mesh.vertices.push(vertex);
+        self.model.mesh.vertices.push(vertex);
         Ok(())
     }
 
@@ -144,7 +165,7 @@ impl Reader<'_> {
         };
         // Of a texture that is a line `v` is left out.
         let v = rest.get(1).map_or(Ok(0.0), |v| self.coordinate(v))?;
-        self.mesh.uvs.push([self.coordinate(u)?, v]);
+        self.model.mesh.uvs.push([self.coordinate(u)?, v]);
         Ok(())
     }
 
@@ -156,7 +177,7 @@ impl Reader<'_> {
         let next = self.slots.len() as u32;
         let slot = *self.slots.entry(name.to_owned()).or_insert(next);
         if slot == next {
-            self.mesh.slots.push(name.to_owned());
+            self.model.mesh.slots.push(name.to_owned());
         }
         self.slot = Some(slot);
     }
@@ -186,8 +207,8 @@ impl Reader<'_> {
 
     fn count(&self, kind: Kind) -> usize {
         match kind {
-            Kind::Vertex => self.mesh.vertices.len(),
-            Kind::Uv => self.mesh.uvs.len(),
+            Kind::Vertex => self.model.mesh.vertices.len(),
+            Kind::Uv => self.model.mesh.uvs.len(),
         }
     }
 
@@ -203,10 +224,19 @@ impl Reader<'_> {
             Ok(number) if from_zero < count => Ok(number),
             // A vertex may come after the face that names it.
             Ok(number) if index > 0 => {
-                self.later.push((kind, number, word.range.clone()));
+                self.later.push((kind, number, word.range.clone(), self.corners.len()));
                 Ok(number)
             }
-            _ => Err(self.out_of_range(kind, index, word.range.clone())),
+            _ => {
+                let report = self.out_of_range(kind, index, word.range.clone());
+                match kind {
+                    Kind::Vertex => Err(report),
+                    Kind::Uv => {
+                        self.model.lost_uv.get_or_insert(report);
+                        Ok(NO_UV)
+                    }
+                }
+            }
         }
     }
 
@@ -224,30 +254,45 @@ impl Reader<'_> {
             .help(help)
     }
 
-    fn finish(mut self) -> Result<ObjModel, Report> {
-        if let Some((kind, number, range)) = self.later.iter().find(|(kind, n, _)| *n as usize >= self.count(*kind)) {
-            return Err(self.out_of_range(*kind, i64::from(*number) + 1, range.clone()));
+    fn finish(mut self) -> Result<Model, Report> {
+        for (kind, number, range, corner) in std::mem::take(&mut self.later) {
+            if (number as usize) < self.count(kind) {
+                continue;
+            }
+            let report = self.out_of_range(kind, i64::from(number) + 1, range);
+            match kind {
+                Kind::Vertex => return Err(report),
+                Kind::Uv => {
+                    self.model.lost_uv.get_or_insert(report);
+                    self.corner_uvs[corner] = NO_UV;
+                }
+            }
         }
         let textured = self.corner_uvs.iter().any(|&uv| uv != NO_UV);
         let mut polygons = Polygons::default();
         let mut start = 0;
         for &(end, slot) in &self.ends {
             let (corners, uvs) = (&self.corners[start..end], &self.corner_uvs[start..end]);
-            let triangles = polygons.places(corners, &self.mesh.vertices);
-            self.mesh.face_slots.extend(triangles.iter().map(|_| slot));
-            self.mesh.faces.extend(triangles.iter().map(|t| t.map(|i| corners[i as usize])));
+            let triangles = polygons.places(corners, &self.model.mesh.vertices);
+            self.model.mesh.face_slots.extend(triangles.iter().map(|_| slot));
+            self.model.mesh.faces.extend(triangles.iter().map(|t| t.map(|i| corners[i as usize])));
             if textured {
                 let whole = !uvs.contains(&NO_UV);
                 let of = |t: &[u32; 3]| if whole { t.map(|i| uvs[i as usize]) } else { NO_UVS };
-                self.mesh.face_uvs.extend(triangles.iter().map(of));
+                self.model.mesh.face_uvs.extend(triangles.iter().map(of));
             }
             start = end;
         }
-        if self.mesh.faces.is_empty() {
+        if self.model.mesh.faces.is_empty() {
             let help = "is it an OBJ file? Its faces are lines that start with `f`";
             return Err(Report::error(format!("`{}` has no faces", self.source.name)).at(self.source, 0..0).help(help));
         }
-        Ok(ObjModel { mesh: self.mesh, libraries: self.libraries, warnings: self.warnings })
+        if self.unknown.len() > NAMED {
+            let message = format!("{} more unknown keywords in a model", self.unknown.len() - NAMED);
+            self.model.warnings.push(Report::warning(WarningCode::UnknownKeyword, message));
+        }
+        self.model.warnings.extend(not_drawn(&self.source.name, self.not_drawn));
+        Ok(self.model)
     }
 }
 
@@ -264,7 +309,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn read(text: &str) -> ObjModel {
+    fn read(text: &str) -> Model {
         parse_obj(&Source::new("m.obj", text)).unwrap()
     }
 
@@ -361,11 +406,7 @@ mod tests {
             (format!("{SQUARE}f 1 2 99999999999999999999\n"), 5, "number of a vertex"),
             (format!("{SQUARE}f 1 2\n"), 5, "at least 3 corners, read 2"),
             (format!("{SQUARE}f 1 x 3\n"), 5, "read `x`"),
-            (format!("{SQUARE}vt 0 0\nf 1/1 2/1 3/2\n"), 6, "no `vt` 2: the file has 1"),
-            (format!("{SQUARE}vt 0 0\nf 1/1 2/1 3/0\n"), 6, "no `vt` 0"),
-            (format!("{SQUARE}vt 0 0\nf 1/1 2/1 3/-2\n"), 6, "no `vt` -2: the file has 1 so far"),
             (format!("{SQUARE}f 1/x 2/1 3/1\n"), 5, "number of a `vt`, read `1/x`"),
-            (format!("{SQUARE}f 1/4294967296 2/1 3/1\n"), 5, "no `vt` 4294967296"),
             ("vt\n".to_owned(), 1, "1 to 3 numbers, read 0"),
             ("vt 0 inf\n".to_owned(), 1, "read `inf`"),
             ("v 1 2\n".to_owned(), 1, "3 numbers, read 2"),
@@ -377,6 +418,37 @@ mod tests {
             let (source, range) = report.place.unwrap();
             assert_eq!(source.line_column(range.start).0, line, "{text}");
         }
+    }
+
+    #[test]
+    fn texture_coordinates_that_are_not_there_are_left_to_who_draws() {
+        for (face, message) in [
+            ("1/1 2/1 3/2", "no `vt` 2: the file has 1"),
+            ("1/1 2/1 3/0", "no `vt` 0"),
+            ("1/1 2/1 3/-2", "no `vt` -2: the file has 1 so far"),
+            ("1/4294967296 2/1 3/1", "no `vt` 4294967296"),
+        ] {
+            let model = read(&format!("{SQUARE}vt 0 0\nf {face}\nf 1/1 2/1 4/1\n"));
+            let report = model.lost_uv.unwrap();
+            let (source, range) = report.place.clone().unwrap();
+            assert!(report.message.contains(message) && source.line_column(range.start).0 == 6, "{report}");
+            assert_eq!(model.mesh.face_uvs, [NO_UVS, [0; 3]]);
+        }
+        assert!(read(&format!("{SQUARE}vt 0 0\nf 1/1 2/1 3/1")).lost_uv.is_none());
+    }
+
+    #[test]
+    fn what_is_not_drawn_is_said_once() {
+        let lines = "vn 0 0 1\nl 1 2\nl 2 3\np 1\n".repeat(3);
+        let unknown: String = (0..20_000).map(|i| format!("word{i}\n")).collect();
+        let model = read(&format!("{SQUARE}{lines}{unknown}mtllib a.mtl\nmtllib a.mtl\nf 1 2 3\n"));
+        let said: Vec<String> = model.warnings.iter().map(ToString::to_string).collect();
+        assert_eq!(said.len(), NAMED + 2, "{said:?}");
+        assert!(
+            said[NAMED].contains("19995 more") && said[NAMED + 1].contains("lines (`l`), points (`p`)"),
+            "{said:?}"
+        );
+        assert!(model.has_normals && model.libraries == ["a.mtl"]);
     }
 
     proptest! {

@@ -1,8 +1,9 @@
 //! PLY (Turk 1994, "The PLY polygon file format"): text and both orders of bytes, polygons and triangle strips.
 
 use super::polygon::Polygons;
-use super::without_materials;
+use super::{Model, not_drawn, without_materials};
 use crate::report::{Report, Source};
+use crate::text::decode;
 use crate::words::{Word, number, words};
 use snell::geometry::{TriangleMesh, Vec3};
 use std::ops::Range;
@@ -14,12 +15,21 @@ use std::ops::Range;
 ///
 /// # Errors
 /// A header that is none, a file that ends too early, a number that is none, an index out of range, no faces.
-pub fn parse_ply(name: &str, bytes: &[u8]) -> Result<TriangleMesh, Report> {
+pub fn parse_ply(name: &str, bytes: &[u8]) -> Result<Model, Report> {
+    let decoded;
+    let bytes = match bytes {
+        [0xef, 0xbb, 0xbf, rest @ ..] => rest,
+        [0xff, 0xfe, ..] | [0xfe, 0xff, ..] | [b'p', 0, ..] | [0, b'p', ..] => {
+            decoded = decode(name, bytes).0;
+            decoded.text.as_bytes()
+        }
+        _ => bytes,
+    };
     let (header, body) = split(name, bytes)?;
     let (format, elements) = read_header(&header)?;
-    match format {
+    let (mesh, warning) = match format {
         Format::Text => {
-            let source = Source::new(name, String::from_utf8_lossy(bytes));
+            let (source, warning) = decode(name, bytes);
             // The header ends with the first line that says so, here too.
             let mut start = 0;
             for line in source.text.split_inclusive('\n') {
@@ -29,9 +39,31 @@ pub fn parse_ply(name: &str, bytes: &[u8]) -> Result<TriangleMesh, Report> {
                 }
             }
             let words = words(&source.text[start..], start);
-            read_elements(&header, &elements, &mut Text { source: &source, words, last: start..start })
+            let mut numbers = Text { source: &source, words, last: start..start };
+            (read_elements(&header, &elements, &mut numbers)?, warning)
         }
-        Format::Bytes { big } => read_elements(&header, &elements, &mut Bytes { name, data: bytes, at: body, big }),
+        Format::Bytes { big } => {
+            (read_elements(&header, &elements, &mut Bytes { name, data: bytes, at: body, big })?, None)
+        }
+    };
+    let unused = elements.iter().flat_map(Element::unused).collect::<Vec<_>>();
+    let has_normals = unused.iter().any(|name| name == "nx of `vertex`");
+    let is_normal = |name: &&str| ["nx of `vertex`", "ny of `vertex`", "nz of `vertex`"].contains(name);
+    let things = unused.iter().map(String::as_str).filter(|name| !is_normal(name));
+    let warnings = not_drawn(name, things).into_iter().chain(warning).collect();
+    Ok(Model { mesh, has_normals, warnings, ..Model::default() })
+}
+
+impl Element {
+    /// What of it is not drawn.
+    fn unused(&self) -> Vec<String> {
+        let places: &[&str] = match &*self.name {
+            "vertex" => &["x", "y", "z", "s", "t", "u", "v", "texture_u", "texture_v"],
+            "face" | "tristrips" => &["vertex_indices", "vertex_index"],
+            name => return vec![format!("element `{name}`")],
+        };
+        let unused = self.properties.iter().filter(|p| !places.contains(&&*p.name));
+        unused.map(|p| format!("{} of `{}`", p.name, self.name)).collect()
     }
 }
 
@@ -84,17 +116,18 @@ struct Element {
     range: Range<usize>,
 }
 
-/// The header as a text, and where what follows begins.
+/// The header as a text, and where what follows begins. Its lines end with LF, CR LF or CR, as the first one does.
 fn split(name: &str, bytes: &[u8]) -> Result<(Source, usize), Report> {
+    // A header of a megabyte is none.
+    let start = &bytes[..bytes.len().min(1 << 20)];
+    let first = start.iter().position(|b| b"\r\n".contains(b)).unwrap_or(0);
+    let end_of_line: u8 =
+        if start.get(first..first + 2) == Some(b"\r\n") { b'\n' } else { start.get(first).copied().unwrap_or(b'\n') };
     let mut at = 0;
-    for line in bytes.split_inclusive(|&b| b == b'\n') {
+    for line in start.split_inclusive(|&b| b == end_of_line) {
         at += line.len();
-        // A header of a megabyte is none.
-        if line.trim_ascii() == b"end_header" && at < 1 << 20 {
+        if line.trim_ascii() == b"end_header" {
             return Ok((Source::new(name, String::from_utf8_lossy(&bytes[..at])), at));
-        }
-        if at >= 1 << 20 {
-            break;
         }
     }
     let help = "a PLY file starts with lines like `ply`, `format ascii 1.0`, `element vertex 8`, … `end_header`";
@@ -358,20 +391,37 @@ mod tests {
         bytes
     }
 
+    fn mesh_of(bytes: &[u8]) -> TriangleMesh {
+        parse_ply("m.ply", bytes).unwrap().mesh
+    }
+
     #[test]
     fn every_format_says_the_same() {
-        let mesh = parse_ply("m.ply", TEXT.as_bytes()).unwrap();
+        let mesh = mesh_of(TEXT.as_bytes());
         assert_eq!((mesh.vertices.len(), &mesh.faces[..]), (4, &[[0, 1, 2], [0, 2, 3]][..]));
         assert_eq!(mesh.vertices[2], Vec3::new(1.0, 1.0, 0.0));
-        assert_eq!(parse_ply("m.ply", TEXT.replace('\n', "\r\n").as_bytes()).unwrap(), mesh);
-        for big in [false, true] {
-            assert_eq!(parse_ply("m.ply", &as_bytes(big, 3)).unwrap(), mesh);
+        assert_eq!(mesh_of(TEXT.replace('\n', "\r\n").as_bytes()), mesh);
+        assert_eq!(mesh_of(TEXT.replace('\n', "\r").as_bytes()), mesh);
+        let utf16: Vec<u8> = TEXT.encode_utf16().flat_map(u16::to_le_bytes).collect();
+        for text in [&[b"\xff\xfe", &utf16[..]].concat(), &utf16, &[b"\xef\xbb\xbf", TEXT.as_bytes()].concat()] {
+            assert_eq!(mesh_of(text), mesh);
         }
+        for big in [false, true] {
+            let bytes = as_bytes(big, 3);
+            assert_eq!(mesh_of(&bytes), mesh);
+            let (head, body) = bytes.split_at(bytes.windows(11).position(|w| w == b"end_header\n").unwrap() + 11);
+            let head = String::from_utf8(head.to_vec()).unwrap();
+            for end in ["\r\n", "\r"] {
+                assert_eq!(mesh_of(&[head.replace('\n', end).as_bytes(), body].concat()), mesh, "{end:?}");
+            }
+        }
+        let warnings = parse_ply("m.ply", TEXT.as_bytes()).unwrap().warnings;
+        assert!(warnings[0].message.contains("red of `vertex`, uv of `face`, element `odd`"), "{}", warnings[0]);
     }
 
     #[test]
     fn texture_coordinates_by_any_of_their_names() {
-        let plain = parse_ply("m.ply", TEXT.as_bytes()).unwrap();
+        let plain = mesh_of(TEXT.as_bytes());
         assert!(plain.uvs.is_empty() && plain.face_uvs.is_empty(), "the list `uv` of the face is another thing");
         for [u, v] in UV_NAMES {
             // z first, so that the last two numbers of a vertex are its texture coordinates.
@@ -381,11 +431,11 @@ mod tests {
                     &format!("property float z\nproperty float {v}\nproperty float {u}"),
                 )
                 .replace(" 255 0\n", " 0 .25 1e9\n");
-            let mesh = parse_ply("m.ply", text.as_bytes()).unwrap();
+            let mesh = mesh_of(text.as_bytes());
             assert_eq!((&mesh.vertices, &mesh.faces), (&plain.vertices, &plain.faces));
             assert_eq!((&mesh.uvs[..], &mesh.face_uvs), (&[[1e9, 0.25]; 4][..], &mesh.faces), "{u} {v}");
             let half = text.replace(&format!("float {u}\n"), "float other\n");
-            assert!(parse_ply("m.ply", half.as_bytes()).unwrap().face_uvs.is_empty());
+            assert!(mesh_of(half.as_bytes()).face_uvs.is_empty());
         }
     }
 
@@ -410,7 +460,7 @@ mod tests {
         assert_eq!(strip_triangles(&restarted).collect::<Vec<_>>(), expected);
         let text = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement \
                     tristrips 1\nproperty list int int vertex_indices\nend_header\n0 0 0 1 0 0 0 1 0 1 1 0\n6 0 1 2 3 -1 0\n";
-        assert_eq!(parse_ply("s.ply", text.as_bytes()).unwrap().faces, [[0, 1, 2], [2, 1, 3]]);
+        assert_eq!(mesh_of(text.as_bytes()).faces, [[0, 1, 2], [2, 1, 3]]);
     }
 
     #[test]
@@ -456,7 +506,7 @@ mod tests {
                 if let Some(byte) = bytes.get_mut(change) {
                     *byte = to;
                 }
-                if let Ok(mesh) = parse_ply("m.ply", &bytes) {
+                if let Ok(Model { mesh, .. }) = parse_ply("m.ply", &bytes) {
                     prop_assert!(mesh.faces.iter().flatten().all(|&v| (v as usize) < mesh.vertices.len()));
                     prop_assert!(mesh.face_uvs.iter().flatten().all(|&v| (v as usize) < mesh.uvs.len()));
                 }

@@ -1,7 +1,7 @@
 //! Where a file lies that another file names.
 
 use crate::disk;
-use crate::report::Report;
+use crate::report::{Report, nearest};
 use snell::scene::WarningCode;
 use std::path::{Path, PathBuf};
 
@@ -28,34 +28,59 @@ pub struct Found {
 /// # Errors
 /// When it is in none of them.
 pub fn find(name: &str, folder: &Path, search: &[PathBuf]) -> Result<Found, Report> {
-    // A driver made on Windows.
-    let name = name.replace('\\', "/");
+    let places = places(folder);
+    find_in(name, &places, search).ok_or_else(|| {
+        let looked: Vec<String> = search.iter().chain(&places).take(8).map(|p| format!("{}/", p.display())).collect();
+        let more = (search.len() + places.len()).saturating_sub(looked.len());
+        let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+        let near = nearest_file(name, search, &places).map_or(String::new(), |near| format!("did you mean `{near}`? "));
+        let help = format!("{near}looked in {}{more}; name another folder with --search DIR", looked.join(", "));
+        Report::error(format!("the file `{name}` is not there")).help(help)
+    })
+}
+
+/// Where files are looked for that a scene or model in `folder` names.
+pub fn places(folder: &Path) -> Vec<PathBuf> {
     let parent = parent(folder);
     let mut places: Vec<PathBuf> = vec![folder.to_owned()];
     places.extend(parent.clone());
     places.extend(folders_in(folder));
     let above = parent.as_deref().map(folders_in).unwrap_or_default();
     places.extend(above.into_iter().filter(|folder| is_model_folder(folder)));
+    places
+}
 
+/// As [`find`], with the [`places`] of the folder.
+pub fn find_in(name: &str, places: &[PathBuf], search: &[PathBuf]) -> Option<Found> {
+    // A driver made on Windows.
+    let name = name.replace('\\', "/");
     let file_name = Path::new(&name).file_name().map(PathBuf::from).unwrap_or_default();
     for candidate in [Path::new(&name), file_name.as_path()] {
         let there = |folders: &[PathBuf]| -> Vec<PathBuf> {
             folders.iter().map(|f| f.join(candidate)).filter(|p| p.is_file()).collect()
         };
         if let Some(path) = there(search).into_iter().next() {
-            return Ok(Found { path, warning: None });
+            return Some(Found { path, warning: None });
         }
-        let found = there(&places);
+        let found = there(places);
         if let Some(path) = found.first() {
-            return Ok(Found { path: path.clone(), warning: ambiguous(&name, &found) });
+            return Some(Found { path: path.clone(), warning: ambiguous(&name, &found) });
         }
     }
-    let looked: Vec<String> = search.iter().chain(&places).take(8).map(|p| format!("{}/", p.display())).collect();
-    let more = (search.len() + places.len()).saturating_sub(looked.len());
-    let more = if more > 0 { format!(" and {more} more") } else { String::new() };
-    let help = format!("looked in {}{more}; name another folder with --search DIR", looked.join(", "));
-    Err(Report::error(format!("the file `{name}` is not there")).help(help))
+    None
 }
+
+/// The name of a file in one of the folders that is most like another.
+fn nearest_file(name: &str, search: &[PathBuf], places: &[PathBuf]) -> Option<String> {
+    let wanted = name.rsplit(['/', '\\']).next().unwrap_or(name);
+    let files = search.iter().chain(places).filter_map(|folder| std::fs::read_dir(folder).ok());
+    let files = files.flat_map(|entries| entries.flatten().take(MOST_FILES)).filter(|entry| entry.path().is_file());
+    let names: Vec<String> = files.filter_map(|entry| entry.file_name().into_string().ok()).collect();
+    nearest(wanted, names.iter().map(String::as_str)).map(str::to_owned)
+}
+
+/// So many files of a folder are compared.
+const MOST_FILES: usize = 10_000;
 
 /// The folder above, also of a relative path without one.
 fn parent(folder: &Path) -> Option<PathBuf> {
@@ -115,6 +140,8 @@ mod tests {
         let find = |name: &str, search: &[PathBuf]| find(name, &at("scenes"), search);
 
         assert!(find("a.obj", &[]).unwrap_err().help.unwrap().contains("--search"));
+        put("scenes/an.obj", "0");
+        assert!(find("am.obj", &[]).unwrap_err().help.unwrap().starts_with("did you mean `an.obj`?"));
         put("other/a.obj", "1");
         assert!(find("a.obj", &[]).is_err(), "not in just any folder above");
         put("scenes/props/a.obj", "1");

@@ -1,7 +1,8 @@
 //! STL, binary and text: triangles and nothing else.
 
-use super::without_materials;
+use super::{Model, not_drawn, without_materials};
 use crate::report::{Report, Source};
+use crate::text::{decode, looks_like_text};
 use crate::words::{Word, number, words};
 use snell::geometry::{TriangleMesh, Vec3};
 use std::collections::HashMap;
@@ -13,34 +14,42 @@ const TRIANGLE: usize = 50;
 
 /// Reads an STL file. Corners at the same position become one vertex; normals are those of the corners' order.
 ///
-/// Binary files may start with `solid` as text files do; one whose size fits its number of triangles is binary.
+/// What it holds decides whether it is text or binary: titles of binary files may start with `solid` too.
 ///
 /// # Errors
 /// A file that ends too early, a number that is none, a loop without three corners, no triangle at all.
-pub fn parse_stl(name: &str, bytes: &[u8]) -> Result<TriangleMesh, Report> {
-    let count = bytes.get(80..HEAD).and_then(|b| b.try_into().ok()).map(u32::from_le_bytes);
-    let size = count.map(|n| HEAD as u64 + TRIANGLE as u64 * u64::from(n));
-    let looks_like_text = bytes.trim_ascii_start().get(..5).is_some_and(|w| w.eq_ignore_ascii_case(b"solid"));
-    let mesh = if looks_like_text && size != Some(bytes.len() as u64) {
-        text(&Source::new(name, String::from_utf8_lossy(bytes)))?
+pub fn parse_stl(name: &str, bytes: &[u8]) -> Result<Model, Report> {
+    let (mesh, warning) = if !is_binary_stl(bytes) && looks_like_text(bytes) && is_stl_text(bytes) {
+        let (source, warning) = decode(name, bytes);
+        (text(&source)?, warning)
     } else {
-        match size {
-            Some(size) if size <= bytes.len() as u64 => binary(name, &bytes[HEAD..size as usize])?,
-            _ => {
-                let length = bytes.len();
-                let message = match count {
-                    Some(n) => format!("`{name}` ends too early: {n} triangles need more than its {length} bytes"),
-                    None => format!("`{name}` has {length} bytes: a binary STL file has at least {HEAD}"),
-                };
-                let help = "a text STL file starts with `solid`; is it an STL file, and is it complete?";
-                return Err(Report::error(message).help(help));
-            }
-        }
+        binary(name, bytes)?
     };
     if mesh.faces.is_empty() {
         return Err(Report::error(format!("`{name}` has no triangles")));
     }
-    Ok(without_materials(mesh))
+    Ok(Model { mesh: without_materials(mesh), warnings: warning.into_iter().collect(), ..Model::default() })
+}
+
+/// Do these bytes have just the length that their number of triangles wants?
+pub(crate) fn is_binary_stl(bytes: &[u8]) -> bool {
+    promised(bytes).is_some_and(|count| count > 0 && size(count) == bytes.len() as u64)
+}
+
+/// The number of triangles that the head of a binary file promises.
+fn promised(bytes: &[u8]) -> Option<u32> {
+    bytes.get(80..HEAD)?.try_into().ok().map(u32::from_le_bytes)
+}
+
+fn size(triangles: u32) -> u64 {
+    HEAD as u64 + TRIANGLE as u64 * u64::from(triangles)
+}
+
+/// A text starts with `solid`; one whose head is lost still has facets.
+fn is_stl_text(bytes: &[u8]) -> bool {
+    let (start, _) = decode("", &bytes[..bytes.len().min(4096)]);
+    let lower = start.text.to_ascii_lowercase();
+    lower.trim_start().starts_with("solid") || lower.split_ascii_whitespace().any(|word| word == "facet")
 }
 
 /// Vertices by position, so that triangles share them.
@@ -63,9 +72,22 @@ impl Builder {
     }
 }
 
-fn binary(name: &str, bytes: &[u8]) -> Result<TriangleMesh, Report> {
+fn binary(name: &str, bytes: &[u8]) -> Result<(TriangleMesh, Option<Report>), Report> {
+    let length = bytes.len() as u64;
+    let count = promised(bytes);
+    let Some(end) = count.map(size).filter(|&end| end <= length) else {
+        let message = match count {
+            Some(n) => {
+                format!("`{name}` ends too early: {n} triangles need {} bytes, more than its {length} bytes", size(n))
+            }
+            None => format!("`{name}` has {length} bytes: a binary STL file has at least {HEAD}"),
+        };
+        let help = "a text STL file starts with `solid`; is it an STL file, and is it complete?";
+        return Err(Report::error(message).help(help));
+    };
     let mut builder = Builder::default();
-    for (i, triangle) in bytes.chunks_exact(TRIANGLE).enumerate() {
+    let mut has_attributes = false;
+    for (i, triangle) in bytes[HEAD..end as usize].chunks_exact(TRIANGLE).enumerate() {
         let value = |k: usize| {
             let at = 12 + 4 * k;
             f64::from(f32::from_le_bytes([triangle[at], triangle[at + 1], triangle[at + 2], triangle[at + 3]]))
@@ -76,8 +98,12 @@ fn binary(name: &str, bytes: &[u8]) -> Result<TriangleMesh, Report> {
             return Err(Report::error(format!("{place}, has a corner that is not finite")));
         }
         builder.triangle(corners);
+        has_attributes |= triangle[48..] != [0, 0];
     }
-    Ok(builder.mesh)
+    let behind = format!("the last {} bytes, behind its triangles", length - end);
+    let attributes = has_attributes.then_some("the attributes of its triangles, by some programs their colours");
+    let things = attributes.into_iter().chain((length > end).then_some(&*behind));
+    Ok((builder.mesh, not_drawn(name, things)))
 }
 
 fn text(source: &Source) -> Result<TriangleMesh, Report> {
@@ -143,17 +169,27 @@ mod tests {
     const TWO: [[[f32; 3]; 3]; 2] =
         [[[0., 0., 0.], [1., 0., 0.], [0., 1., 0.]], [[1., 0., 0.], [1., 1., 0.], [0., 1., 0.]]];
 
+    fn mesh_of(bytes: &[u8]) -> TriangleMesh {
+        parse_stl("t.stl", bytes).unwrap().mesh
+    }
+
     #[test]
     fn text_and_bytes_say_the_same() {
-        let mesh = parse_stl("t.stl", TEXT.as_bytes()).unwrap();
+        let mesh = mesh_of(TEXT.as_bytes());
         assert_eq!((mesh.vertices.len(), &mesh.faces[..]), (4, &[[0, 1, 2], [1, 3, 2]][..]));
         for title in [&b"made by nobody"[..], b"solid says nothing"] {
             let mut bytes = as_binary(title, &TWO);
-            assert_eq!(parse_stl("t.stl", &bytes).unwrap(), mesh);
-            if title[0] == b'm' {
-                bytes.push(0);
-                assert_eq!(parse_stl("t.stl", &bytes).unwrap(), mesh, "what is behind is not looked at");
-            }
+            assert_eq!(mesh_of(&bytes), mesh);
+            bytes.extend([0; 92]);
+            let longer = parse_stl("t.stl", &bytes).unwrap();
+            assert_eq!(longer.mesh, mesh, "what is behind is no triangle");
+            let warnings: Vec<String> = longer.warnings.iter().map(ToString::to_string).collect();
+            assert!(
+                warnings.len() == 1 && warnings[0].contains("92 bytes") && warnings[0].contains("attributes"),
+                "{warnings:?}"
+            );
+            let cut = parse_stl("t.stl", &bytes[..150]).unwrap_err();
+            assert!(cut.message.contains("2 triangles need 184 bytes, more than its 150 bytes"), "{cut}");
         }
     }
 
@@ -170,11 +206,16 @@ mod tests {
             let (source, range) = report.place.clone().unwrap();
             assert!(report.message.contains(message) && source.line_column(range.start).0 == line, "{report}");
         }
+        for text in
+            [format!("\u{feff}{TEXT}"), TEXT.replacen("solid two\n", "", 1), TEXT.to_uppercase(), format!("\n  {TEXT}")]
+        {
+            assert_eq!(mesh_of(text.as_bytes()), mesh_of(TEXT.as_bytes()), "{text}");
+        }
         let cut = &TEXT[..TEXT.find("endloop").unwrap()];
         assert!(parse_stl("t.stl", cut.as_bytes()).unwrap_err().message.contains("ends within"));
         let mut bytes = as_binary(b"", &TWO);
         let message = |bytes: &[u8]| parse_stl("t.stl", bytes).unwrap_err().message;
-        assert!(message(&bytes[..150]).contains("2 triangles need more than its 150 bytes"));
+        assert!(message(&bytes[..150]).contains("2 triangles need 184 bytes"));
         assert!(message(&bytes[..9]).contains("at least 84"));
         bytes[80..84].copy_from_slice(&[255; 4]);
         assert!(message(&bytes).contains("4294967295 triangles"));

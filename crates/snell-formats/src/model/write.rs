@@ -1,4 +1,4 @@
-//! Writing a mesh as OBJ.
+//! Writing meshes: as OBJ for people and other programs, as PLY for what is large.
 
 use snell::geometry::{NO_UVS, TriangleMesh};
 use std::io::{Result, Write};
@@ -38,10 +38,31 @@ pub fn write_obj(mesh: &TriangleMesh, libraries: &[String], out: &mut (impl Writ
     Ok(())
 }
 
+/// How the files of [`write_ply`] start.
+pub const PLY_HEAD: &str = "ply\nformat binary_little_endian 1.0\ncomment a mesh of a scene, written by Snell\n";
+
+/// Writes vertices and faces of a mesh as a binary PLY, with the bits of every `f64`.
+///
+/// # Errors
+/// When the writer fails.
+pub fn write_ply(mesh: &TriangleMesh, out: &mut (impl Write + ?Sized)) -> Result<()> {
+    writeln!(out, "{PLY_HEAD}element vertex {}", mesh.vertices.len())?;
+    writeln!(out, "property double x\nproperty double y\nproperty double z\nelement face {}", mesh.faces.len())?;
+    writeln!(out, "property list uchar uint vertex_indices\nend_header")?;
+    for v in &mesh.vertices {
+        out.write_all(&[v.x, v.y, v.z].map(f64::to_le_bytes).concat())?;
+    }
+    for face in &mesh.faces {
+        out.write_all(&[3])?;
+        out.write_all(&face.map(u32::to_le_bytes).concat())?;
+    }
+    Ok(())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::parse_obj;
+    use crate::model::{parse_obj, parse_ply};
     use crate::report::Source;
 
     #[test]
@@ -52,5 +73,16 @@ mod tests {
         write_obj(&model.mesh, &model.libraries, &mut bytes).unwrap();
         let again = parse_obj(&Source::new("b.obj", String::from_utf8(bytes).unwrap())).unwrap();
         assert_eq!((again.mesh, again.libraries), (model.mesh, model.libraries));
+    }
+
+    #[test]
+    fn a_ply_keeps_every_bit() {
+        let vertices = vec![[0.1, -0.0, 1e-300].into(), [1e300, 1.0 / 3.0, 2.0].into(), [0.0, 1.0, 0.0].into()];
+        let mesh = TriangleMesh { vertices, faces: vec![[0, 1, 2], [2, 1, 0], [0, 0, 1]], ..TriangleMesh::default() };
+        let mut bytes = Vec::new();
+        write_ply(&mesh, &mut bytes).unwrap();
+        let again = parse_ply("m.ply", &bytes).unwrap();
+        assert_eq!((&again.mesh.vertices, &again.mesh.faces), (&mesh.vertices, &mesh.faces));
+        assert!(again.warnings.is_empty() && again.mesh.vertices[0].y.is_sign_negative());
     }
 }

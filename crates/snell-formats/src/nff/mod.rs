@@ -43,14 +43,19 @@ pub struct Nff {
     pub scene: Scene,
     /// What has no equal in a scene.
     pub warnings: Vec<Report>,
-    places: Vec<(Vec<Step>, Range<usize>)>,
+    /// Where it says it.
+    pub places: Places,
 }
 
-impl Nff {
+/// Where the parts of a scene come from.
+#[derive(Clone, Debug, Default)]
+pub struct Places(Vec<(Vec<Step>, Range<usize>)>);
+
+impl Places {
     /// Bytes of the entity that a place in the scene comes from.
-    pub fn place(&self, steps: &[Step]) -> Option<Range<usize>> {
+    pub fn find(&self, steps: &[Step]) -> Option<Range<usize>> {
         let fits = |(place, _): &&(Vec<Step>, Range<usize>)| steps.starts_with(place);
-        self.places.iter().filter(fits).max_by_key(|(place, _)| place.len()).map(|(_, range)| range.clone())
+        self.0.iter().filter(fits).max_by_key(|(place, _)| place.len()).map(|(_, range)| range.clone())
     }
 }
 
@@ -324,6 +329,6 @@ impl<'a, W: Iterator<Item = Word<'a>>> Reader<'a, W> {
             meshes,
             ..Scene::new(render, camera)
         };
-        Ok(Nff { scene, warnings: self.warnings, places })
+        Ok(Nff { scene, warnings: self.warnings, places: Places(places) })
     }
 }

@@ -33,7 +33,7 @@ fn every_entity_finds_its_place() {
     let said: Vec<usize> = nff.warnings.iter().map(|w| w.place.clone().unwrap().1.start).collect();
     assert_eq!(nff.warnings.len(), 2, "normals, cone: {said:?}");
     assert_eq!(scene.background, Rgb::new(0.1, 0.2, 0.3));
-    let place = nff.place(&[Step::from("sphere"), Step::from(0), Step::from("radius")]).unwrap();
+    let place = nff.places.find(&[Step::from("sphere"), Step::from(0), Step::from("radius")]).unwrap();
     assert_eq!(
         &format!("{VIEW}b .1 .2 .3 # sky\nl 1 2 3\nl 4 5 6 .5 .6 .7\nf 1 .5 .25 .5 .4 30 .75 1.5\n").len(),
         &place.start

@@ -18,10 +18,7 @@ pub(super) fn write(out: &mut dyn Out, film: &Film, recipe: Option<&str>) -> std
     let mut attributes = LayerAttributes::named("");
     attributes.software_name = Some(Text::from(concat!("Snell ", env!("CARGO_PKG_VERSION"))));
     attributes.layer_position = Vec2(film.crop.x as i32, film.crop.y as i32);
-    if let Some(recipe) = recipe {
-        let bytes: attribute::TextBytes = recipe.bytes().collect();
-        attributes.other.insert(Text::from(KEYWORD), AttributeValue::Text(Text::from_bytes_unchecked(bytes)));
-    }
+    remember(&mut attributes, recipe);
     let display = IntegerBounds::from_dimensions(Vec2(film.full_size[0] as usize, film.full_size[1] as usize));
     // One scan line block after the other, in this thread: the bytes do not depend on the machine.
     let encoding = Encoding { compression: Compression::ZIP16, ..Encoding::FAST_LOSSLESS };
@@ -39,12 +36,20 @@ pub(super) fn write(out: &mut dyn Out, film: &Film, recipe: Option<&str>) -> std
     }
 }
 
-/// One EXR layer for each.
+fn remember(attributes: &mut LayerAttributes, recipe: Option<&str>) {
+    if let Some(recipe) = recipe {
+        let bytes: attribute::TextBytes = recipe.bytes().collect();
+        attributes.other.insert(Text::from(KEYWORD), AttributeValue::Text(Text::from_bytes_unchecked(bytes)));
+    }
+}
+
+/// One EXR layer for each; the first one remembers.
 pub(super) fn write_layers(
     out: &mut dyn Out,
     size: [u32; 2],
     picture: &[Rgb],
     layers: &[(String, Vec<Rgb>)],
+    recipe: Option<&str>,
 ) -> std::io::Result<()> {
     let size = Vec2(size[0] as usize, size[1] as usize);
     let encoding = Encoding { compression: Compression::ZIP16, ..Encoding::FAST_LOSSLESS };
@@ -57,8 +62,9 @@ pub(super) fn write_layers(
         Layer::new(size, LayerAttributes::named(name), encoding, AnyChannels::sort(channels))
     };
     let named = layers.iter().map(|(name, pixels)| (name.as_str(), pixels.as_slice()));
-    let layer_data: Layers<AnyChannels<FlatSamples>> =
+    let mut layer_data: Layers<AnyChannels<FlatSamples>> =
         [("picture", picture)].into_iter().chain(named).map(|(name, pixels)| layer(name, pixels)).collect();
+    remember(&mut layer_data[0].attributes, recipe);
     let image = Image { attributes: ImageAttributes::new(IntegerBounds::from_dimensions(size)), layer_data };
     image.write().non_parallel().to_buffered(out).map_err(|e| std::io::Error::other(e.to_string()))
 }

@@ -5,7 +5,7 @@ mod npy;
 mod png;
 mod ppm;
 
-use crate::disk;
+use crate::disk::{self, Out};
 use crate::report::{Report, nearest};
 use snell::film::transfer::Encoding;
 use snell::film::{Film, Rgb};
@@ -61,12 +61,26 @@ impl Format {
 /// # Errors
 /// When writing fails; what was there before stays.
 pub fn write(path: &Path, format: Format, film: &Film, encoding: Encoding, recipe: Option<&str>) -> Result<(), Report> {
-    disk::write(path, |out| match format {
+    disk::write(path, |out| write_to(out, format, film, encoding, recipe))
+}
+
+/// The same to anything that can be written to and gone back in.
+///
+/// # Errors
+/// When writing fails.
+pub fn write_to(
+    out: &mut dyn Out,
+    format: Format,
+    film: &Film,
+    encoding: Encoding,
+    recipe: Option<&str>,
+) -> std::io::Result<()> {
+    match format {
         Format::Png { sixteen_bit } => png::write(out, film, encoding, sixteen_bit, recipe),
         Format::Ppm { binary } => ppm::write(out, film, encoding, binary),
         Format::Exr => exr::write(out, film, recipe),
         Format::Npy => npy::write(out, film),
-    })
+    }
 }
 
 /// A film as the bytes of a PNG of 8 bit, as [`write()`] has it.
@@ -80,13 +94,19 @@ pub fn png_bytes(film: &Film, encoding: Encoding, recipe: Option<&str>) -> Resul
     Ok(bytes)
 }
 
-/// Writes layers of a picture by their names into an EXR file, first the picture itself; each has the channels R, G and B. All
-/// have `size[0]·size[1]` pixels, row by row.
+/// Writes layers of a picture by their names as EXR, first the picture itself; each has the channels R, G and B. All have
+/// `size[0]·size[1]` pixels, row by row. `recipe` is kept, as in [`write()`].
 ///
 /// # Errors
-/// When writing fails; what was there before stays.
-pub fn write_layers(path: &Path, size: [u32; 2], picture: &[Rgb], layers: &[(String, Vec<Rgb>)]) -> Result<(), Report> {
-    disk::write(path, |out| exr::write_layers(out, size, picture, layers))
+/// When writing fails.
+pub fn write_layers_to(
+    out: &mut dyn Out,
+    size: [u32; 2],
+    picture: &[Rgb],
+    layers: &[(String, Vec<Rgb>)],
+    recipe: Option<&str>,
+) -> std::io::Result<()> {
+    exr::write_layers(out, size, picture, layers, recipe)
 }
 
 /// A picture that was read, with pixels of some kind.

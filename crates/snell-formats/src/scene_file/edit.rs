@@ -1,39 +1,32 @@
 //! `--set material.glass.eta=2.42`: changing one value of a scene.
 
-use super::{Syntax, parse, to_text};
-use crate::report::{Report, Source, nearest};
+use super::explain;
+use crate::report::{Report, Source, known_names};
+use indexmap::IndexMap;
+use serde::Serialize;
+use serde::de::{DeserializeOwned, IntoDeserializer};
+use snell::scene::{Scene, Step};
+use std::mem::take;
 use toml_edit::{Array, DocumentMut, Item, Key, TableLike, Value};
 
-/// Gives a scene the layout of a file made by hand: `[material.NAME]`, `[[sphere]]`, and short lists on one line.
-pub(super) fn for_people(document: &mut DocumentMut) {
-    for (_, item) in document.iter_mut() {
-        if let Some(list) = item.as_array().filter(|a| a.iter().any(Value::is_inline_table)) {
-            let tables =
-                list.iter().filter_map(Value::as_inline_table).cloned().map(toml_edit::InlineTable::into_table);
-            *item = Item::ArrayOfTables(tables.collect());
-        } else if let Some(inline) = item.as_inline_table().cloned() {
-            let mut table = inline.into_table();
-            for (_, item) in table.iter_mut() {
-                if let Some(inner) = item.as_inline_table().cloned() {
-                    *item = Item::Table(inner.into_table());
-                }
-            }
-            // `[material]` alone would be an empty header.
-            table.set_implicit(true);
-            *item = Item::Table(table);
-        }
-    }
-}
-
-/// Changes one value of a scene text and returns the new text, as TOML.
+/// Changes one value of a scene, and returns its place there.
 ///
 /// `change` is `key=value`. The key names a value with dots, as in TOML, quotes included; elements of a list go by name
 /// or by number from 1: `camera.near`, `material.glass.eta`, `sphere.glass.radius`, `light.2.color`, `material."x.y".kd`.
 /// The value is TOML; a bare word is a text.
 ///
+/// Only the part that the key names becomes text and is read again, so that a scene may be as large as it likes.
+///
 /// # Errors
-/// When the change has no `=`, or its key does not lead to a table of the scene.
-pub fn set(source: &Source, syntax: Syntax, change: &str) -> Result<Source, Report> {
+/// When the change has no `=`, its key does not lead to a table of the scene, or what comes out is no scene. The place is in the
+/// text of the change.
+pub fn set(scene: &mut Scene, change: &str) -> Result<Vec<Step>, Report> {
+    let source = Source::new("--set", change);
+    set_in(scene, change)
+        .map_err(|report| if report.place.is_some() { report } else { report.at(&source, 0..change.len()) })
+}
+
+fn set_in(scene: &mut Scene, change: &str) -> Result<Vec<Step>, Report> {
     // The first `=` outside quotes: names may hold one.
     let mut quoted = false;
     let equals = change.char_indices().find(|&(_, c)| {
@@ -45,36 +38,158 @@ pub fn set(source: &Source, syntax: Syntax, change: &str) -> Result<Source, Repo
         return Err(Report::error(format!("`--set {change}` has no `=`")).help(help));
     };
     let no_key = || Report::error(format!("`{key}` is no key of a scene")).help("like material.glass.eta");
-    let text = match syntax {
-        Syntax::Toml => source.text.to_string(),
-        Syntax::Json => to_text(&parse(source, syntax)?, Syntax::Toml)?,
-    };
-    let mut document: DocumentMut = text
-        .parse()
-        .map_err(|e: toml_edit::TomlError| Report::error(e.message()).at(source, e.span().unwrap_or(0..0)))?;
     let keys = Key::parse(key.trim()).map_err(|_| no_key())?;
     let keys: Vec<&str> = keys.iter().map(Key::get).collect();
-    let (last, path) = keys.split_last().ok_or_else(no_key)?;
-    let new = parse_value(value);
-    match find(Place::Table(document.as_table_mut()), path, "")? {
-        Place::Table(table) => {
-            table.insert(last, Item::Value(new));
-        }
-        Place::List(list) => {
-            let index = last.parse::<usize>().ok().and_then(|n| n.checked_sub(1)).filter(|&i| i < list.len());
-            let Some(index) = index else {
-                let help = format!("it has {} elements, counted from 1", list.len());
-                return Err(Report::error(format!("there is no `{}` in this scene", keys.join("."))).help(help));
-            };
-            list.replace(index, new);
-        }
+    let (first, path) = keys.split_first().ok_or_else(no_key)?;
+    let change = Change { first, path, value: parse_value(value) };
+    match *first {
+        "light" => change.of_list(&mut scene.lights, |light| light.name.as_deref()),
+        "sphere" => change.of_list(&mut scene.spheres, |sphere| sphere.name.as_deref()),
+        "mesh" => change.of_list(&mut scene.meshes, |mesh| mesh.name.as_deref()),
+        "plane" => change.of_list(&mut scene.planes, |plane| plane.name.as_deref()),
+        "box" => change.of_list(&mut scene.boxes, |cuboid| cuboid.name.as_deref()),
+        "lathe" => change.of_list(&mut scene.lathes, |lathe| lathe.name.as_deref()),
+        "material" => change.of_names(&mut scene.materials),
+        "texture" => change.of_names(&mut scene.textures),
+        _ => change.of_settings(scene),
     }
-    let name = source.name.strip_suffix(CHANGED).unwrap_or(&source.name);
-    Ok(Source::new(format!("{name}{CHANGED}"), document.to_string()))
 }
 
-/// What the name of a changed text ends with, so that nobody looks for the change in the file.
-const CHANGED: &str = " with --set";
+/// A change of what the first key names.
+struct Change<'a> {
+    first: &'a str,
+    /// The keys behind it.
+    path: &'a [&'a str],
+    value: Value,
+}
+
+impl Change<'_> {
+    /// Of an element of a list, or of all of it.
+    fn of_list<T: Serialize + DeserializeOwned>(
+        &self,
+        elements: &mut Vec<T>,
+        name: impl Fn(&T) -> Option<&str>,
+    ) -> Result<Vec<Step>, Report> {
+        let first = self.first;
+        let Some((element, rest)) = self.path.split_first() else {
+            let tables = self.value.as_array().filter(|array| array.iter().all(Value::is_inline_table));
+            tables.ok_or_else(|| Report::error(format!("`{first}` is a list of tables")))?;
+            *elements = read(self.value.clone())?;
+            return Ok(vec![Step::from(first)]);
+        };
+        let number = || element.parse::<usize>().ok()?.checked_sub(1).filter(|&i| i < elements.len());
+        let index = elements.iter().position(|e| name(e) == Some(*element)).or_else(number);
+        let Some(index) = index else {
+            if self.path.len() == 1 && element.parse::<usize>().is_err() {
+                let help = format!("name the element by its name or number, like {first}.1.{element}");
+                return Err(Report::error(format!("`{first}` is a list")).help(help));
+            }
+            let known: Vec<String> =
+                elements.iter().enumerate().map(|(i, e)| name(e).map_or((i + 1).to_string(), str::to_owned)).collect();
+            return Err(unknown(&format!("{first}.{element}"), element, &known));
+        };
+        let mut steps = vec![Step::from(first), Step::from(index)];
+        if rest.is_empty() {
+            elements[index] = self.table()?;
+        } else {
+            steps.extend(self.of_table(&mut elements[index], rest, &format!("{first}.{element}"))?);
+        }
+        Ok(steps)
+    }
+
+    /// Of what has a name, or of a new one.
+    fn of_names<T: Serialize + DeserializeOwned>(&self, named: &mut IndexMap<String, T>) -> Result<Vec<Step>, Report> {
+        let first = self.first;
+        let Some((name, rest)) = self.path.split_first() else {
+            return Err(
+                Report::error(format!("`{first}` is a table of names")).help(format!("like {first}.NAME.KEY=VALUE"))
+            );
+        };
+        let mut steps = vec![Step::from(first), Step::from(*name)];
+        if rest.is_empty() {
+            named.insert((*name).to_owned(), self.table()?);
+            return Ok(steps);
+        }
+        let walked = format!("{first}.{name}");
+        let Some(value) = named.get_mut(*name) else {
+            let known: Vec<String> = named.keys().cloned().collect();
+            return Err(unknown(&walked, name, &known));
+        };
+        steps.extend(self.of_table(value, rest, &walked)?);
+        Ok(steps)
+    }
+
+    /// Of everything that is there once.
+    fn of_settings(&self, scene: &mut Scene) -> Result<Vec<Step>, Report> {
+        let known = schema_keys();
+        if !known.iter().any(|key| key == self.first) {
+            return Err(unknown(self.first, self.first, &known));
+        }
+        let (lights, materials, textures) =
+            (take(&mut scene.lights), take(&mut scene.materials), take(&mut scene.textures));
+        let (spheres, meshes, planes) = (take(&mut scene.spheres), take(&mut scene.meshes), take(&mut scene.planes));
+        let (boxes, lathes) = (take(&mut scene.boxes), take(&mut scene.lathes));
+        let keys: Vec<&str> = std::iter::once(self.first).chain(self.path.iter().copied()).collect();
+        let steps = self.of_table(scene, &keys, "");
+        *scene = Scene { lights, materials, textures, spheres, meshes, planes, boxes, lathes, ..scene.clone() };
+        steps
+    }
+
+    /// Of a value in a table, or in what is in it. Returns the steps to it.
+    fn of_table<T: Serialize + DeserializeOwned>(
+        &self,
+        table: &mut T,
+        keys: &[&str],
+        walked: &str,
+    ) -> Result<Vec<Step>, Report> {
+        let written =
+            |e: toml_edit::ser::Error| Report::error(format!("this part of the scene cannot be written: {e}"));
+        let mut document: DocumentMut = toml_edit::ser::to_document(table).map_err(written)?;
+        let Some((last, path)) = keys.split_last() else { return Ok(Vec::new()) };
+        let mut steps = Vec::new();
+        match find(Place::Table(document.as_table_mut()), path, walked, &mut steps)? {
+            Place::Table(table) => {
+                table.insert(last, Item::Value(self.value.clone()));
+                steps.push(Step::from(*last));
+            }
+            Place::List(list) => {
+                let index = last.parse::<usize>().ok().and_then(|n| n.checked_sub(1)).filter(|&i| i < list.len());
+                let Some(index) = index else {
+                    let help = format!("it has {} elements, counted from 1", list.len());
+                    let all: Vec<&str> =
+                        Some(walked).filter(|w| !w.is_empty()).into_iter().chain(keys.iter().copied()).collect();
+                    return Err(Report::error(format!("there is no `{}` in this scene", all.join("."))).help(help));
+                };
+                list.replace(index, self.value.clone());
+                steps.push(Step::from(index));
+            }
+        }
+        let text = document.to_string();
+        *table = toml_edit::de::from_str(&text).map_err(|e| explain(e.message(), &text[e.span().unwrap_or(0..0)]))?;
+        Ok(steps)
+    }
+
+    /// The value itself, as a table.
+    fn table<T: DeserializeOwned>(&self) -> Result<T, Report> {
+        let keys: Vec<&str> = std::iter::once(self.first).chain(self.path.iter().copied()).collect();
+        if !self.value.is_inline_table() {
+            let message = format!("`{}` is a table", keys.join("."));
+            return Err(Report::error(message).help("name a key of it, or write a whole one: { kd = 0.5 }"));
+        }
+        read(self.value.clone())
+    }
+}
+
+fn read<T: DeserializeOwned>(value: Value) -> Result<T, Report> {
+    T::deserialize(value.into_deserializer()).map_err(|e| explain(e.message(), ""))
+}
+
+/// The keys of a scene.
+fn schema_keys() -> Vec<String> {
+    let schema = schemars::schema_for!(Scene);
+    let properties = schema.get("properties").and_then(|p| p.as_object());
+    properties.into_iter().flat_map(|p| p.keys().cloned()).collect()
+}
 
 /// Where a value can be put.
 enum Place<'a> {
@@ -83,41 +198,33 @@ enum Place<'a> {
 }
 
 /// The table or list at the end of a path. It must exist: a misspelt name would make a new one that nothing uses.
-fn find<'a>(place: Place<'a>, path: &[&str], walked: &str) -> Result<Place<'a>, Report> {
+fn find<'a>(place: Place<'a>, path: &[&str], walked: &str, steps: &mut Vec<Step>) -> Result<Place<'a>, Report> {
     let Some((step, rest)) = path.split_first() else { return Ok(place) };
     let walked = if walked.is_empty() { (*step).to_owned() } else { format!("{walked}.{step}") };
     let leaf = |walked: &str| Report::error(format!("`{walked}` has no keys of its own"));
-    let list_itself = |walked: &str| {
-        let help = "name the element by its name or number, like sphere.1.radius";
-        Report::error(format!("`{walked}` is a list")).help(help)
-    };
     match place {
         Place::List(list) => {
-            // `sphere = [{ … }, { … }]` has names like `[[sphere]]`; other elements have numbers.
-            let names = names(list.iter().map(|v| v.as_inline_table().map(|t| t as &dyn TableLike)));
-            match position(&names, step).and_then(|i| list.get_mut(i)) {
-                None => Err(unknown(&walked, step, &names)),
-                Some(Value::InlineTable(table)) => find(Place::Table(table), rest, &walked),
-                Some(Value::Array(inner)) => find(Place::List(inner), rest, &walked),
-                Some(_) => Err(leaf(&walked)),
+            let count = list.len();
+            let index = step.parse::<usize>().ok().and_then(|n| n.checked_sub(1)).filter(|&i| i < count);
+            let Some(index) = index else {
+                let known: Vec<String> = (1..=count).map(|i| i.to_string()).collect();
+                return Err(unknown(&walked, step, &known));
+            };
+            steps.push(Step::from(index));
+            match list.get_mut(index) {
+                Some(Value::InlineTable(table)) => find(Place::Table(table), rest, &walked, steps),
+                Some(Value::Array(inner)) => find(Place::List(inner), rest, &walked, steps),
+                _ => Err(leaf(&walked)),
             }
         }
         Place::Table(table) => {
             let known: Vec<String> = table.iter().map(|(key, _)| key.to_owned()).collect();
+            steps.push(Step::from(*step));
             match table.get_mut(step) {
                 None => Err(unknown(&walked, step, &known)),
-                Some(Item::ArrayOfTables(list)) => {
-                    let Some((element, rest)) = rest.split_first() else { return Err(list_itself(&walked)) };
-                    let names = names(list.iter().map(|t| Some(t as &dyn TableLike)));
-                    let walked = format!("{walked}.{element}");
-                    match position(&names, element).and_then(|i| list.get_mut(i)) {
-                        Some(table) => find(Place::Table(table), rest, &walked),
-                        None => Err(unknown(&walked, element, &names)),
-                    }
-                }
-                Some(Item::Value(Value::Array(list))) => find(Place::List(list), rest, &walked),
+                Some(Item::Value(Value::Array(list))) => find(Place::List(list), rest, &walked, steps),
                 Some(item) => match item.as_table_like_mut() {
-                    Some(table) => find(Place::Table(table), rest, &walked),
+                    Some(table) => find(Place::Table(table), rest, &walked, steps),
                     None => Err(leaf(&walked)),
                 },
             }
@@ -125,24 +232,9 @@ fn find<'a>(place: Place<'a>, path: &[&str], walked: &str) -> Result<Place<'a>, 
     }
 }
 
-/// What the elements of a list are called: by their `name`, or their number from 1.
-fn names<'a>(elements: impl Iterator<Item = Option<&'a dyn TableLike>>) -> Vec<String> {
-    let name = |(i, t): (usize, Option<&dyn TableLike>)| {
-        t.and_then(|t| t.get("name")?.as_str()).map_or((i + 1).to_string(), str::to_owned)
-    };
-    elements.enumerate().map(name).collect()
-}
-
-fn position(names: &[String], element: &str) -> Option<usize> {
-    names.iter().position(|n| n == element).or_else(|| element.parse::<usize>().ok()?.checked_sub(1))
-}
-
 fn unknown(walked: &str, step: &str, known: &[String]) -> Report {
-    let list = known.join(", ");
-    let help = match nearest(step, known.iter().map(String::as_str)) {
-        Some(near) => format!("did you mean `{near}`? Known here: {list}"),
-        None => format!("known here: {list}"),
-    };
+    let names = known.iter().map(String::as_str);
+    let help = if known.is_empty() { "there are none".to_owned() } else { known_names(step, names) };
     Report::error(format!("there is no `{walked}` in this scene")).help(help)
 }
 

@@ -7,38 +7,46 @@ use snell::scene::Step;
 use std::ops::Range;
 use toml_edit::Item;
 
-/// The bytes of the value at `steps`; of the nearest table around it, where it is left out.
-pub(super) fn locate(text: &str, syntax: Syntax, steps: &[Step]) -> Option<Range<usize>> {
+/// The bytes of the value at each of these places; of the nearest table around it, where it is left out.
+pub(super) fn locate(text: &str, syntax: Syntax, places: &[&[Step]]) -> Vec<Option<Range<usize>>> {
+    // A large text is taken apart once for all of them, and not at all for none.
+    if places.is_empty() {
+        return Vec::new();
+    }
     match syntax {
         Syntax::Toml => {
-            let document = toml_edit::Document::parse(text).ok()?;
-            let mut found = None;
-            let mut item = document.as_item();
-            for step in steps {
-                let Some(next) = toml_step(item, step) else { break };
-                item = next;
-                found = item.span().or(found);
-            }
-            // Elements of a plain array are values, not items: the array as a whole is shown.
-            found
+            let document = toml_edit::Document::parse(text).ok();
+            let of = |steps: &&[Step]| in_toml(document.as_ref()?.as_item(), steps);
+            places.iter().map(of).collect()
         }
         Syntax::Json => {
-            let parsed = jsonc_parser::parse_to_ast(
-                text,
-                &jsonc_parser::CollectOptions::default(),
-                &jsonc_parser::ParseOptions::default(),
-            )
-            .ok()?;
-            let root = parsed.value?;
-            let mut value = &root;
-            for step in steps {
-                let Some(next) = json_step(value, step) else { break };
-                value = next;
-            }
-            let range = value.range();
-            Some(range.start..range.end)
+            let (collect, parse) = (jsonc_parser::CollectOptions::default(), jsonc_parser::ParseOptions::default());
+            let root = jsonc_parser::parse_to_ast(text, &collect, &parse).ok().and_then(|parsed| parsed.value);
+            let of = |steps: &&[Step]| in_json(root.as_ref()?, steps);
+            places.iter().map(of).collect()
         }
     }
+}
+
+fn in_toml(root: &Item, steps: &[Step]) -> Option<Range<usize>> {
+    let (mut item, mut found) = (root, None);
+    for step in steps {
+        let Some(next) = toml_step(item, step) else { break };
+        item = next;
+        found = item.span().or(found);
+    }
+    // Elements of a plain array are values, not items: the array as a whole is shown.
+    found
+}
+
+fn in_json(root: &Json<'_>, steps: &[Step]) -> Option<Range<usize>> {
+    let mut value = root;
+    for step in steps {
+        let Some(next) = json_step(value, step) else { break };
+        value = next;
+    }
+    let range = value.range();
+    Some(range.start..range.end)
 }
 
 /// The way to the innermost value of a JSON text around a byte: the inverse of `locate`.
@@ -93,7 +101,7 @@ mod tests {
             vec![Step::from("sphere"), Step::from(0), Step::from("radius")],
             vec![Step::from("sphere"), Step::from(1), Step::from("center"), Step::from(2)],
         ] {
-            let range = locate(text, Syntax::Json, &steps).unwrap();
+            let range = locate(text, Syntax::Json, &[&steps]).remove(0).unwrap();
             assert_eq!([steps_at(text, range.start), steps_at(text, range.end - 1)], [steps.clone(), steps]);
         }
         assert_eq!(steps_at(text, text.len()), []);

@@ -10,6 +10,7 @@
 //! Nothing here traces a ray or knows physics that the engine does not have: it names and adds up what was recorded.
 
 mod angles;
+mod black;
 mod bound;
 mod channels;
 mod document;
@@ -19,11 +20,12 @@ mod survey;
 pub mod text;
 mod view;
 
+pub use black::black_picture;
 pub use channels::{Channels, channels, hits};
 pub use document::{
     Ending, ExplainedHit, ExplainedLight, ExplainedNode, ExplainedSample, Explanation, LocalLight, NodeKind, explain,
 };
-pub use path::{How, Leg, Path, PathError};
+pub use path::{How, Leg, Path, PathError, SKY};
 pub use sentence::{color_name, percent};
 pub use survey::{Layers, Sightings, by_path, find, layers, only};
 pub use view::ViewScene;

@@ -31,7 +31,7 @@ pub struct Material {
     /// Name of a glass of the catalogue, instead of `eta`: its index at the d line, and with `whitted` its colours.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub glass: Option<String>,
-    /// `whitted`: the Abbe number of the glass whose index at the d line (587.56 nm) is `eta`.
+    /// `whitted`: the Abbe number of the glass whose index at the d line (587.56 nm) is `eta`; infinite for no dispersion.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub abbe: Option<f64>,
     /// `whitted`: Cauchy's A, B and C instead of `eta`: the index at λ µm is A + B/λ² + C/λ⁴.
@@ -114,8 +114,8 @@ impl Material {
             (Some(name), ..) => glass::find(name)?.dispersion.clone(),
             (None, Some(pairs), ..) => visible(Formula::SellmeierSquared(0.0, Cow::Owned(pairs.clone()))),
             (None, None, Some(cauchy), _) => visible(Formula::Cauchy(cauchy)),
-            (None, None, None, Some(abbe)) => Dispersion::abbe(self.eta, abbe),
-            (None, None, None, None) => Dispersion::constant(self.eta),
+            (None, None, None, Some(abbe)) if abbe.is_finite() => Dispersion::abbe(self.eta, abbe),
+            (None, None, None, _) => Dispersion::constant(self.eta),
         })
     }
 

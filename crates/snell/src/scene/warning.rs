@@ -36,7 +36,7 @@ macro_rules! codes {
 }
 
 codes! {
-    /// A sphere of radius 0.
+    /// A sphere of radius 0, or scaled to it.
     InvisibleSphere = "W001" "invisible-sphere",
     /// A mesh with a transparent material in an integrator that refracts only in spheres.
     MeshNotRefracted = "W002" "mesh-not-refracted",
@@ -56,6 +56,12 @@ codes! {
     BeforeImagePlane = "W009" "before-image-plane",
     /// A light that stands on a surface, as far as hits can tell.
     LightOnSurface = "W010" "light-on-surface",
+    /// A coefficient of a material below 0.
+    NegativeCoefficient = "W011" "negative-coefficient",
+    /// A name with characters that cannot be seen, or that steer a terminal.
+    UnprintableName = "W012" "unprintable-name",
+    /// A surface sends out light that reaches no other surface.
+    EmissionLightsNothing = "W013" "emission-lights-nothing",
     /// A line that starts with an unknown word.
     UnknownKeyword = "W101" "unknown-keyword",
     /// The same setting given twice; the last one counts.
@@ -70,10 +76,16 @@ codes! {
     UnclearDialect = "W106" "unclear-dialect",
     /// What a file of another format says has no equal in a scene.
     Approximated = "W107" "approximated",
+    /// Bytes that are no text.
+    NotUtf8 = "W108" "not-utf-8",
+    /// Something in a model that is read but not drawn.
+    NotDrawn = "W109" "not-drawn",
     /// The bounds were widened to keep pixels square.
     WidenedBounds = "W201" "widened-bounds",
     /// The light behind branches that were cut short.
     LostLight = "W202" "lost-light",
+    /// Every pixel is black.
+    BlackPicture = "W203" "black-picture",
 }
 
 impl fmt::Display for Warning {

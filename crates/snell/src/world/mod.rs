@@ -22,7 +22,7 @@ pub(crate) use texture::{Background, Pattern};
 
 use crate::film::Rgb;
 use crate::geometry::bvh::{Bvh, Quality, TreeStatistics};
-use crate::geometry::{Affine, Sphere};
+use crate::geometry::{Affine, Bounds, Sphere};
 use crate::optics::spectrum::Band;
 use crate::scene::{Integrator, Material, Mesh, Problem, Render, Scene, Step, Warning, validate};
 
@@ -199,6 +199,15 @@ impl World {
     pub fn object_of(&self, primitive: u32) -> Option<&Object> {
         let after = self.objects.partition_point(|o| o.first <= primitive);
         self.objects[..after].last().filter(|o| primitive - o.first < o.count)
+    }
+
+    /// The smallest box around everything that is there; [`Bounds::EMPTY`] if nothing is.
+    pub fn bounds(&self) -> Bounds {
+        let of = |primitive: usize| match self.spheres.get(primitive) {
+            Some(sphere) => sphere.bounds(),
+            None => Bounds::of(self.corners(primitive)),
+        };
+        (0..self.primitive_count()).map(of).fold(Bounds::EMPTY, Bounds::union)
     }
 
     /// What the tree over the primitives is made of.

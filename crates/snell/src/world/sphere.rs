@@ -3,7 +3,7 @@
 use super::mesh::MaterialIds;
 use super::{NO_SOLID, Object, Solid, World};
 use crate::geometry::{Affine, Sphere, Vec3};
-use crate::scene::{self, LARGEST_NUMBER, Problem, Step, whole_map};
+use crate::scene::{self, LARGEST_NUMBER, Problem, Step, Warning, WarningCode, whole_map};
 
 impl World {
     /// Adds a sphere in all of its places.
@@ -20,10 +20,9 @@ impl World {
             sphere.instances.iter().map(|steps| own.then(whole_map(steps))).collect()
         };
         for map in places {
-            let problem = |message: String, help: &str| {
-                let place = vec![Step::from("sphere"), Step::from(index), Step::from("transform")];
-                Problem { place, message, help: Some(help.to_owned()) }
-            };
+            let place = vec![Step::from("sphere"), Step::from(index), Step::from("transform")];
+            let problem =
+                |message: String, help: &str| Problem { place: place.clone(), message, help: Some(help.to_owned()) };
             let Some(factor) = similarity(&map) else {
                 let help = "scale by the same factor along x, y and z; for an ellipsoid use a `lathe` or a mesh";
                 return Err(problem("a sphere must stay a sphere, and this stretches it".to_owned(), help));
@@ -32,6 +31,10 @@ impl World {
             let farthest = center.length() + radius;
             if farthest.is_nan() || farthest > LARGEST_NUMBER {
                 return Err(problem("the sphere ends up beyond 1e15".to_owned(), ""));
+            }
+            if radius == 0.0 && sphere.radius > 0.0 {
+                let message = "this scales the sphere to radius 0: it is invisible".to_owned();
+                self.warnings.push(Warning { code: WarningCode::InvisibleSphere, place, message });
             }
             self.place_sphere(index, sphere, material_ids, Sphere { center, radius });
             if map != Affine::IDENTITY || !self.sphere_turns.is_empty() {

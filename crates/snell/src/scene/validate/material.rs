@@ -1,7 +1,8 @@
 //! Checks of materials and of their textures.
 
 use super::{Findings, MAX_BANDS, Step};
-use crate::optics::dispersion::LINE_D_NM;
+use crate::film::Rgb;
+use crate::optics::dispersion::{LINE_D_NM, NoIndex};
 use crate::optics::spectrum;
 use crate::scene::{Integrator, Material, Scene, WarningCode};
 
@@ -13,6 +14,11 @@ pub(super) fn materials(scene: &Scene, found: &mut Findings) {
         let at = |key: &str| place!["material", name.as_str(), key];
         for (key, value) in [("ka", m.ka), ("kd", m.kd), ("ks", m.ks), ("kr", m.kr), ("ko", m.ko)] {
             found.color(&at(key), value);
+            if let Some(below) = value.to_array().into_iter().find(|&v| v < 0.0) {
+                let message =
+                    format!("{key} of material `{name}` is {below}: light is taken away where it should be added");
+                found.warning(WarningCode::NegativeCoefficient, at(key), message);
+            }
         }
         if m.ko.to_array().iter().any(|&ko| ko > 1.0) {
             let message = format!("material `{name}` is more than opaque: its transparent share 1 - ko is negative");
@@ -36,10 +42,23 @@ pub(super) fn materials(scene: &Scene, found: &mut Findings) {
     }
 }
 
+/// What glows is seen, but lights nothing: once for a scene with something that could be lit.
+pub(super) fn emission(scene: &Scene, found: &mut Findings) {
+    let black = |color: Rgb| color == Rgb::gray(0.0);
+    let could_be_lit = scene.materials.values().any(|m| black(m.emission) && !black(m.kd));
+    let glows = scene.materials.iter().find(|(_, m)| !black(m.emission));
+    if let Some((name, _)) = glows.filter(|_| could_be_lit && scene.render.integrator == Integrator::Whitted) {
+        let message = format!("`{name}` glows, but lights nothing around it: only a [[light]] does");
+        found.warning(WarningCode::EmissionLightsNothing, place!["material", name.as_str(), "emission"], message);
+    }
+}
+
 fn dispersion(scene: &Scene, found: &mut Findings, at: &impl Fn(&str) -> Vec<Step>, m: &Material) {
+    // An infinite Abbe number is no dispersion at all.
+    let abbe = m.abbe.filter(|&abbe| abbe != f64::INFINITY);
     let given = [
         ("glass", m.glass.is_some()),
-        ("abbe", m.abbe.is_some()),
+        ("abbe", abbe.is_some()),
         ("cauchy", m.cauchy.is_some()),
         ("sellmeier", m.sellmeier.is_some()),
     ];
@@ -57,7 +76,7 @@ fn dispersion(scene: &Scene, found: &mut Findings, at: &impl Fn(&str) -> Vec<Ste
         let message = format!("the index is given twice: by `{key}` and by `eta`");
         found.problem(at("eta"), message, "remove one of them");
     }
-    if m.abbe.is_some_and(|abbe| !found.number(at("abbe"), abbe) || abbe <= 0.0) {
+    if abbe.is_some_and(|abbe| !found.number(at("abbe"), abbe) || abbe <= 0.0) {
         found.problem(at("abbe"), "an Abbe number must be above 0", "crown glass has about 60, flint about 30");
         return;
     }
@@ -79,7 +98,13 @@ fn dispersion(scene: &Scene, found: &mut Findings, at: &impl Fn(&str) -> Vec<Ste
         let mut wavelengths =
             spectrum::bands(bands as usize).into_iter().map(|band| band.wavelength_nm).chain([LINE_D_NM]);
         if let Some(error) = wavelengths.find_map(|nm| dispersion.eta(nm).err()) {
-            found.problem(at(key), format!("{error}; pictures need it from 380 to 780 nm"), "give the index by `eta`");
+            let message = match (error, &m.glass) {
+                (NoIndex::OutOfRange { range_nm: [from, to], .. }, Some(glass)) => {
+                    format!("the index of `{glass}` is known from {from} to {to} nm; pictures need it from 380 to 780 nm")
+                }
+                _ => format!("{error}; pictures need it from 380 to 780 nm"),
+            };
+            found.problem(at(key), message, "give the index by `eta`");
         }
     }
 }

@@ -5,8 +5,11 @@ macro_rules! place {
 }
 
 mod material;
+mod name;
 mod shape;
 mod view;
+
+pub use name::is_unprintable;
 
 use super::{Integrator, Scene, Shadows, Warning, WarningCode};
 use crate::film::Rgb;
@@ -130,6 +133,7 @@ pub fn validate(scene: &Scene) -> Result<Vec<Warning>, Vec<Problem>> {
     view::lights(scene, &mut found);
     view::sky(scene, &mut found);
     material::materials(scene, &mut found);
+    material::emission(scene, &mut found);
     material::textures(scene, &mut found);
     shape::spheres(scene, &mut found);
     shape::meshes(scene, &mut found);
@@ -138,6 +142,7 @@ pub fn validate(scene: &Scene) -> Result<Vec<Warning>, Vec<Problem>> {
     shape::lathes(scene, &mut found);
     material::indices(scene, &mut found);
     only_whitted(scene, &mut found);
+    name::names(scene, &mut found);
     if found.problems.is_empty() { Ok(found.warnings) } else { Err(found.problems) }
 }
 
@@ -214,8 +219,16 @@ fn only_whitted(scene: &Scene, found: &mut Findings) {
     }
 }
 
+/// More names than this are counted.
+const NAMED: usize = 20;
+
 /// Names in a message.
-fn names<'a>(names: impl Iterator<Item = &'a String>) -> String {
-    let known: Vec<String> = names.map(|k| format!("`{k}`")).collect();
-    if known.is_empty() { "none".to_owned() } else { known.join(", ") }
+fn names<'a>(names: impl ExactSizeIterator<Item = &'a String>) -> String {
+    let more = names.len().saturating_sub(NAMED);
+    let known: Vec<String> = names.take(NAMED).map(|k| format!("`{k}`")).collect();
+    match (known.is_empty(), more) {
+        (true, _) => "none".to_owned(),
+        (false, 0) => known.join(", "),
+        (false, more) => format!("{} and {more} more", known.join(", ")),
+    }
 }

@@ -1,0 +1,146 @@
+//! What a file is, by its content and its name: for those who give a command a file that it does not take.
+
+use crate::model::is_binary_stl;
+use crate::report::Report;
+use crate::text::looks_like_text;
+use std::path::Path;
+
+/// What somebody has given.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Given {
+    /// A model that Snell reads.
+    Model(&'static str),
+    /// A library of materials, which models name.
+    Materials,
+    /// A picture that Snell reads.
+    Picture(&'static str),
+    /// Something known that Snell does not read, and what to do with it.
+    Foreign(&'static str, &'static str),
+    /// A text; whether it is a scene shows when it is read.
+    Text,
+    /// Bytes that say nothing.
+    Bytes,
+}
+
+const MAKE_OBJ: &str = "export it as OBJ or PLY, and name that in a scene";
+const MAKE_PNG: &str = "convert it to PNG, like: magick picture.jpg picture.png";
+const UNPACK: &str = "unpack it first";
+
+/// How binary files start.
+const MAGIC: &[(&[u8], Given)] = &[
+    (b"\x89PNG\r\n\x1a\n", Given::Picture("a PNG picture")),
+    (b"\x76\x2f\x31\x01", Given::Picture("an EXR picture")),
+    (b"\x93NUMPY", Given::Picture("a NumPy array")),
+    (b"ply\n", Given::Model("a PLY model")),
+    (b"ply\r", Given::Model("a PLY model")),
+    (b"glTF", Given::Foreign("a glTF model", MAKE_OBJ)),
+    (b"Kaydara FBX", Given::Foreign("an FBX model", MAKE_OBJ)),
+    (b"BLENDER", Given::Foreign("a Blender file", MAKE_OBJ)),
+    (b"\xff\xd8\xff", Given::Foreign("a JPEG picture", MAKE_PNG)),
+    (b"GIF8", Given::Foreign("a GIF picture", MAKE_PNG)),
+    (b"RIFF", Given::Foreign("a WebP picture or a film", MAKE_PNG)),
+    (b"II*\0", Given::Foreign("a TIFF picture", MAKE_PNG)),
+    (b"MM\0*", Given::Foreign("a TIFF picture", MAKE_PNG)),
+    (b"#?RADIANCE", Given::Foreign("a Radiance HDR picture", "convert it to EXR, and name that as the sky of a scene")),
+    (b"PK\x03\x04", Given::Foreign("a ZIP archive", UNPACK)),
+    (b"\x1f\x8b", Given::Foreign("a gzip archive", UNPACK)),
+    (b"%PDF", Given::Foreign("a PDF document", "")),
+];
+
+/// What texts are whose first lines look like anything.
+const ENDINGS: &[(&str, Given)] = &[
+    ("obj", Given::Model("a Wavefront OBJ model")),
+    ("stl", Given::Model("an STL model")),
+    ("ply", Given::Model("a PLY model")),
+    ("mtl", Given::Materials),
+    ("gltf", Given::Foreign("a glTF model", MAKE_OBJ)),
+    ("fbx", Given::Foreign("an FBX model", MAKE_OBJ)),
+    ("dae", Given::Foreign("a Collada model", MAKE_OBJ)),
+    ("usd", Given::Foreign("a USD scene", MAKE_OBJ)),
+    ("usda", Given::Foreign("a USD scene", MAKE_OBJ)),
+    ("pov", Given::Foreign("a POV-Ray scene", "write it anew as a scene of Snell: docs/scenes.md shows how")),
+    ("pbrt", Given::Foreign("a pbrt scene", "write it anew as a scene of Snell: docs/scenes.md shows how")),
+    ("xml", Given::Foreign("an XML file", "write it anew as a scene of Snell: docs/scenes.md shows how")),
+    ("ipynb", Given::Foreign("a notebook", "open it in Jupyter")),
+    ("py", Given::Foreign("a Python program", "run it with python")),
+];
+
+/// What a file of this name with these bytes is.
+pub fn given(path: &Path, bytes: &[u8]) -> Given {
+    if let Some((_, known)) = MAGIC.iter().find(|(magic, _)| bytes.starts_with(magic)) {
+        return *known;
+    }
+    if let [b'P', b'3' | b'6', space, ..] = bytes
+        && space.is_ascii_whitespace()
+    {
+        return Given::Picture("a PPM picture");
+    }
+    if is_binary_stl(bytes) {
+        return Given::Model("a binary STL model");
+    }
+    let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
+    if let Some((_, known)) = ENDINGS.iter().find(|(known, _)| *known == ending) {
+        return *known;
+    }
+    if looks_like_text(bytes) { Given::Text } else { Given::Bytes }
+}
+
+impl Given {
+    /// Why this is no scene, and what to do with it; `None` for what may be one.
+    pub fn no_scene(self, shown: &str) -> Option<Report> {
+        let (what, help) = match self {
+            Self::Text => return None,
+            Self::Model(what) => (
+                what,
+                format!(
+                    "name it in a scene: `[[mesh]]` with `file = \"{shown}\"` (docs/scenes.md has a whole one); \
+                     `snell check {shown}` says whether it is a solid"
+                ),
+            ),
+            Self::Materials => ("a library of materials", "name the model that uses it in a scene".to_owned()),
+            Self::Picture(what) => (
+                what,
+                format!(
+                    "`snell info {shown}` says how it was made, and `snell render --from {shown}` makes it again, if it was Snell"
+                ),
+            ),
+            Self::Foreign(what, help) => (what, help.to_owned()),
+            Self::Bytes => ("no text", "scenes are text files: TOML, JSON, drivers of the course, or NFF".to_owned()),
+        };
+        let report = Report::error(format!("`{shown}` is {what}, not a scene"));
+        Some(if help.is_empty() { report } else { report.help(help) })
+    }
+
+    /// What it is, in words, if that is known.
+    pub fn words(self) -> Option<&'static str> {
+        match self {
+            Self::Model(what) | Self::Picture(what) | Self::Foreign(what, _) => Some(what),
+            Self::Materials => Some("a library of materials"),
+            Self::Text | Self::Bytes => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn content_comes_before_the_name() {
+        for (name, bytes, expected) in [
+            ("a.toml", &b"\x89PNG\r\n\x1a\n"[..], "a PNG picture, not a scene"),
+            ("spot.obj", b"v 0 0 0\n", "OBJ model, not a scene"),
+            ("SPOT.OBJ", b"v 0 0 0\n", "OBJ model, not a scene"),
+            ("a", b"ply\nformat ascii 1.0\n", "a PLY model"),
+            ("a.glb", b"glTF\x02\0\0\0", "a glTF model"),
+            ("a.bin", &[0, 1, 2, 200], "is no text"),
+            ("a", b"P6 1 1 255 \0\0\0", "a PPM picture"),
+            ("a.xml", b"<scene/>", "an XML file"),
+        ] {
+            let report = given(Path::new(name), bytes).no_scene(name).unwrap();
+            assert!(report.message.contains(expected), "{report}");
+        }
+        assert_eq!(given(Path::new("a.toml"), b"snell = 1\n"), Given::Text);
+        assert_eq!(given(Path::new("d.txt"), b"PPM 3\n"), Given::Text);
+    }
+}

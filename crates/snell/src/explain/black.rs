@@ -1,0 +1,79 @@
+//! Why a whole picture is black.
+
+use super::{Explanation, Names, explain};
+use crate::film::{Film, Rgb};
+use crate::scene::{Warning, WarningCode};
+
+/// So many columns and rows of pixels are looked at.
+const GRID: usize = 12;
+
+/// W203 for a finished film without any light, with the reason.
+pub fn black_picture(names: &Names<'_>, film: &Film) -> Option<Warning> {
+    let black = !film.pixels.is_empty() && film.is_finished() && film.pixels.iter().all(|&p| p == Rgb::gray(0.0));
+    black.then(|| {
+        let message = format!("every pixel is black: {}", reason(names, film));
+        Warning { code: WarningCode::BlackPicture, place: Vec::new(), message }
+    })
+}
+
+fn reason(names: &Names<'_>, film: &Film) -> String {
+    let world = names.world;
+    if world.primitive_count() == 0 {
+        return "there is nothing in the scene".to_owned();
+    }
+    let black = |color: Rgb| color == Rgb::gray(0.0);
+    let glows = world.materials.iter().any(|m| !black(m.emission));
+    if black(world.ambient)
+        && world.lights.iter().all(|light| black(light.color))
+        && world.background.is_black()
+        && !glows
+    {
+        return "nothing sends out light: the scene has no lights, and no `ambient`".to_owned();
+    }
+    let (columns, rows) = (film.width(), film.height());
+    let all_over = |count: usize| (0..count).step_by(count.div_ceil(GRID)).map(|i| i as u32);
+    let pixels = all_over(rows).flat_map(|y| all_over(columns).map(move |x| [film.crop.x + x, film.crop.y + y]));
+    let seen = pixels.filter_map(|[x, y]| explain(world, names.scene, "", x, y)).map(|(explanation, _)| explanation);
+    match seen.into_iter().find_map(|explanation| at_surface(names, &explanation)) {
+        Some(reason) => reason,
+        None if all_behind(names) => "everything lies behind the camera".to_owned(),
+        None => "the camera looks past everything that is there: see `eye`, `look_at` and the angle of view".to_owned(),
+    }
+}
+
+/// Why what the camera's ray meets has no colour.
+fn at_surface(names: &Names<'_>, explanation: &Explanation) -> Option<String> {
+    let [x, y] = explanation.pixel;
+    let node = explanation.samples.first()?.nodes.first()?;
+    let hit = node.hit.as_ref()?;
+    let material = names.scene.materials.get(&hit.material);
+    let object = &hit.object;
+    if material.is_some_and(|m| [m.ka, m.kd, m.ks].iter().all(|&c| c == Rgb::gray(0.0)) && !m.is_transparent()) {
+        return Some(format!(
+            "`{object}` in pixel {x},{y} has no colour: ka, kd and ks of its material `{}` are 0",
+            hit.material
+        ));
+    }
+    let lights = node.local.as_ref().map_or(&[][..], |local| &local.lights);
+    let why = match lights {
+        [] => "no light shines on it".to_owned(),
+        [first, ..] => match &first.blocked_by {
+            _ if lights.iter().all(|light| !light.facing) => "it faces away from every light".to_owned(),
+            Some(blocker) => format!("`{blocker}` blocks its light `{}`", first.name),
+            None => "nothing of its light comes back".to_owned(),
+        },
+    };
+    Some(format!("`{object}` is seen in pixel {x},{y}, but {why}"))
+}
+
+/// Does no shape begin in front of the camera?
+fn all_behind(names: &Names<'_>) -> bool {
+    let world = names.world;
+    let [width, height] = world.camera.size;
+    let (eye, ahead) = world.camera.ray(width / 2, height / 2);
+    world.objects.iter().all(|object| {
+        let first = object.first as usize;
+        let place = world.spheres.get(first).map_or_else(|| world.corners(first)[0], |sphere| sphere.center);
+        (place - eye).dot(ahead) < 0.0
+    })
+}
