@@ -73,7 +73,7 @@ pub fn beside(output: &Path) -> PathBuf {
         let number = if number == 1 { String::new() } else { format!("-{number}") };
         output.with_file_name(format!("{stem}-unfinished{number}.{ending}"))
     };
-    (1..).map(name).find(|path| path.symlink_metadata().is_err()).unwrap_or_else(|| output.to_owned())
+    (1..=u32::MAX).map(name).find(|path| path.symlink_metadata().is_err()).unwrap_or_else(|| output.to_owned())
 }
 
 #[cfg(test)]

@@ -87,7 +87,9 @@ pub fn shown(reports: &[Report]) -> (Vec<&Report>, Vec<String>, Vec<&Report>) {
 pub fn reports(reports: &[Report]) {
     let (warnings, more, errors) = shown(reports);
     warnings.into_iter().for_each(report);
-    more.iter().for_each(|line| tell(line));
+    for line in &more {
+        tell(line);
+    }
     errors.into_iter().for_each(report);
 }
 

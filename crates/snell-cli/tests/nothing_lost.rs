@@ -38,6 +38,10 @@ fn files(at: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     entries.filter(|e| e.path().is_file()).map(|e| (e.path(), fs::read(e.path()).unwrap())).collect()
 }
 
+fn lines(count: usize, of: impl Fn(usize) -> String) -> String {
+    (0..count).map(of).collect::<Vec<_>>().join("\n") + "\n"
+}
+
 /// Refused: an exit code, a line that begins with `error`, nothing that steers a terminal, and no file touched.
 fn refused(at: &Path, arguments: &[&str], before: &BTreeMap<PathBuf, Vec<u8>>) -> Output {
     let output = snell(at, arguments);
@@ -158,11 +162,11 @@ fn files_of_the_wrong_kind() {
 fn twenty_warnings_and_then_the_error() {
     let folder = workplace();
     let at = folder.path();
-    let odd: String = (0..40).map(|i| format!("odd{i} x\n")).collect();
+    let odd = lines(40, |i| format!("odd{i} x"));
     fs::write(at.join("d.txt"), format!("{odd}{DRIVER}sphere 0 0 0 oops\n")).unwrap();
     fs::write(at.join("m.obj"), format!("{odd}{MODEL}f 1 2 oops\n")).unwrap();
     fs::write(at.join("m.toml"), SCENE.replace("model.obj", "m.obj")).unwrap();
-    let negative: String = (0..40).map(|i| format!("[material.m{i}]\nkd = -1\n")).collect();
+    let negative = lines(40, |i| format!("[material.m{i}]\nkd = -1"));
     fs::write(at.join("w.toml"), format!("{negative}{SCENE}").replace("radius = 1", "radius = oops")).unwrap();
     let before = files(at);
     for input in ["d.txt", "m.toml", "w.toml"] {
@@ -485,7 +489,8 @@ fn names_that_do_not_exist() {
 /// A render that takes long enough to be interrupted.
 #[cfg(unix)]
 fn long_render(at: &Path, output: &str, before: &str) -> std::process::Child {
-    let line = format!("{before} exec \"$0\" render gallery/ball --size 1200x1200 --spp 16 --progress json -o {output}");
+    let line =
+        format!("{before} exec \"$0\" render gallery/ball --size 1200x1200 --spp 16 --progress json -o {output}");
     let mut render = Command::new("sh");
     render.args(["-c", &line, env!("CARGO_BIN_EXE_snell")]).current_dir(at).stderr(Stdio::piped());
     render.spawn().unwrap()
@@ -620,7 +625,7 @@ fn no_threads_to_be_had() {
 fn no_memory_to_be_had() {
     let folder = workplace();
     let at = folder.path();
-    let many: String = (0..60_000).map(|i| format!("s {i} 0 0 1\n")).collect();
+    let many = lines(60_000, |i| format!("s {i} 0 0 1"));
     let head = "v\nfrom 0 0 9\nat 0 0 0\nup 0 1 0\nangle 40\nhither 1\nresolution 8 8\nf 1 1 1 1 0 0 0 0\n";
     fs::write(at.join("many.nff"), format!("{head}{many}")).unwrap();
     let before = files(at);

@@ -169,7 +169,7 @@ fn band_of_turn(turn: usize, count: usize) -> usize {
     };
     let count = count as u64;
     let golden = (count as f64 * 0.618_033_988_749_895) as u64;
-    let step = (golden.max(1)..).find(|&step| gcd(step, count) == 1).unwrap_or(1);
+    let step = (golden.max(1)..=count).find(|&step| gcd(step, count) == 1).unwrap_or(1);
     (turn as u64 * step % count) as usize
 }
 

@@ -127,11 +127,12 @@ impl Places {
 
     fn put_all(&self, reports: Vec<(Report, &[Step])>) -> Vec<Report> {
         let places: Vec<&[Step]> = reports.iter().map(|(_, steps)| *steps).collect();
-        let put = |((report, _), found): ((Report, &[Step]), Option<(&Source, Range<usize>)>)| match found {
+        let found = self.find(&places).into_iter();
+        let put = |(report, found): (Report, Option<(&Source, Range<usize>)>)| match found {
             Some((source, range)) => report.at(source, range),
             None => report,
         };
-        reports.into_iter().zip(self.find(&places)).map(put).collect()
+        reports.into_iter().map(|(report, _)| report).zip(found).map(put).collect()
     }
 }
 

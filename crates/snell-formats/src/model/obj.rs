@@ -440,7 +440,8 @@ mod tests {
     #[test]
     fn what_is_not_drawn_is_said_once() {
         let lines = "vn 0 0 1\nl 1 2\nl 2 3\np 1\n".repeat(3);
-        let unknown: String = (0..20_000).map(|i| format!("word{i}\n")).collect();
+        let unknown: Vec<String> = (0..20_000).map(|i| format!("word{i}")).collect();
+        let unknown = unknown.join("\n") + "\n";
         let model = read(&format!("{SQUARE}{lines}{unknown}mtllib a.mtl\nmtllib a.mtl\nf 1 2 3\n"));
         let said: Vec<String> = model.warnings.iter().map(ToString::to_string).collect();
         assert_eq!(said.len(), NAMED + 2, "{said:?}");

@@ -22,7 +22,7 @@ pub(super) fn locate(text: &str, syntax: Syntax, places: &[&[Step]]) -> Vec<Opti
         Syntax::Json => {
             let (collect, parse) = (jsonc_parser::CollectOptions::default(), jsonc_parser::ParseOptions::default());
             let root = jsonc_parser::parse_to_ast(text, &collect, &parse).ok().and_then(|parsed| parsed.value);
-            let of = |steps: &&[Step]| in_json(root.as_ref()?, steps);
+            let of = |steps: &&[Step]| Some(in_json(root.as_ref()?, steps));
             places.iter().map(of).collect()
         }
     }
@@ -39,14 +39,14 @@ fn in_toml(root: &Item, steps: &[Step]) -> Option<Range<usize>> {
     found
 }
 
-fn in_json(root: &Json<'_>, steps: &[Step]) -> Option<Range<usize>> {
+fn in_json(root: &Json<'_>, steps: &[Step]) -> Range<usize> {
     let mut value = root;
     for step in steps {
         let Some(next) = json_step(value, step) else { break };
         value = next;
     }
     let range = value.range();
-    Some(range.start..range.end)
+    range.start..range.end
 }
 
 /// The way to the innermost value of a JSON text around a byte: the inverse of `locate`.

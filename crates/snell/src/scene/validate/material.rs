@@ -4,7 +4,7 @@ use super::{Findings, MAX_BANDS, Step};
 use crate::film::Rgb;
 use crate::optics::dispersion::{LINE_D_NM, NoIndex};
 use crate::optics::spectrum;
-use crate::scene::{Integrator, Material, Scene, WarningCode};
+use crate::scene::{Integrator, Material, Scene, Shadows, WarningCode};
 
 /// More terms of Sellmeier's sum than anybody publishes.
 const MAX_TERMS: usize = 8;
@@ -42,12 +42,13 @@ pub(super) fn materials(scene: &Scene, found: &mut Findings) {
     }
 }
 
-/// What glows is seen, but lights nothing: once for a scene with something that could be lit.
+/// What glows is seen, but lights nothing: once for a scene with something that could be lit, and where light is not only painted.
 pub(super) fn emission(scene: &Scene, found: &mut Findings) {
     let black = |color: Rgb| color == Rgb::gray(0.0);
-    let could_be_lit = scene.materials.values().any(|m| black(m.emission) && !black(m.kd));
+    let painted = scene.render.integrator != Integrator::Whitted || scene.render.shadows() == Shadows::Off;
+    let could_be_lit = !painted && scene.materials.values().any(|m| black(m.emission) && !black(m.kd));
     let glows = scene.materials.iter().find(|(_, m)| !black(m.emission));
-    if let Some((name, _)) = glows.filter(|_| could_be_lit && scene.render.integrator == Integrator::Whitted) {
+    if let Some((name, _)) = glows.filter(|_| could_be_lit) {
         let message = format!("`{name}` glows, but lights nothing around it: only a [[light]] does");
         found.warning(WarningCode::EmissionLightsNothing, place!["material", name.as_str(), "emission"], message);
     }
@@ -100,7 +101,9 @@ fn dispersion(scene: &Scene, found: &mut Findings, at: &impl Fn(&str) -> Vec<Ste
         if let Some(error) = wavelengths.find_map(|nm| dispersion.eta(nm).err()) {
             let message = match (error, &m.glass) {
                 (NoIndex::OutOfRange { range_nm: [from, to], .. }, Some(glass)) => {
-                    format!("the index of `{glass}` is known from {from} to {to} nm; pictures need it from 380 to 780 nm")
+                    format!(
+                        "the index of `{glass}` is known from {from} to {to} nm; pictures need it from 380 to 780 nm"
+                    )
                 }
                 _ => format!("{error}; pictures need it from 380 to 780 nm"),
             };
