@@ -11,20 +11,26 @@ PAGE = ROOT / "docs" / "performance.md"
 PLOT = ROOT / "docs" / "pictures" / "growth.svg"
 
 HEAD = """# Performance
+"""
 
-Everything here was measured by a command and written by `benches/report.py`; nothing is typed by hand. Times depend on
-the machine: look at ratios, and at how far they spread. `make bench` measures kernels, trees, rays and pictures;
-`make bench-peers` compares with other programs and measures how cost grows.
+FOOT = """## How to measure it yourself
+
+    make bench         # kernels, trees, rays and pictures
+    make bench-peers   # against other programs, and how cost grows
+
+Each section says which machine it was measured on, when, and with which command. `make bench-peers` compares with POV-Ray and Embree 3
+where they are installed (Debian 12: `sudo apt-get install povray g++ libembree-dev`), and leaves out what is not there. Both keep what
+they measure in `docs/performance.json`, and `benches/report.py` writes this page from it: no number is typed by hand. Times depend on the
+machine, ratios less so; look at how far they spread. `snell render` says with each picture how long it took.
 """
 
 HOW = """\
 A ratio is taken within a round, in which every program is asked once; shown are the median of the rounds, the smallest
-and the largest, and the ratio of everybody's best times, which other jobs disturb least. Rows 1 to 5 and 9 say how many
-times as fast Snell is, one thread against one; rows 6 and 8 are Snell's share of the other's, so less is better. For
-POV-Ray the time is the trace time that it reports itself, for Snell that of `render::render_into`, into the memory of a
-film that is there, so that fetching it from the system is not in it. For rays it is the time from columns of rays to
-columns of hits; both programs get the same rays and the same mesh, in numbers that `f32` can hold.
-Embree computes in `f32`, Snell in `f64`.
+and the largest, and the ratio of everybody's best times, which other jobs disturb least. Of "times as fast" more is better, of "times
+as long" and "times as much" less. Programs are compared one thread against one. For POV-Ray the time is the trace time that it
+reports itself, for Snell that of `render::render_into`, into the memory of a film that is there, so that fetching it from the system
+is not in it. For rays it is the time from columns of rays to columns of hits; both programs get the same rays and the same mesh, in
+numbers that `f32` can hold. Embree computes in `f32`, Snell in `f64`.
 """
 
 FLAKES = """\
@@ -38,8 +44,8 @@ like the lecture's, and gets its own glass and mirrors with the same coefficient
 GLASS = """\
 The glass knot (`whitted`, index 1.5, no branch below 1/255) is the same picture in both programs where glass takes
 nothing from the light, but for pixels in which the chessboard is seen very small. `snell diff`: {glass}.
-The board is a polygon with a pattern in POV-Ray and 8192 triangles in Snell. In the second line both send the shadow
-rays through the glass: POV-Ray's light loses nothing there, Snell's what Fresnel says, at each face.
+The board is a polygon with a pattern in POV-Ray and 8192 triangles in Snell. Where light falls through the glass, both send
+their shadow rays straight through it: POV-Ray's light loses nothing there, Snell's what Fresnel says, at each face.
 """
 
 
@@ -79,6 +85,21 @@ def spread(values: list[float], show=digits) -> str:
     return f"{show(min(values))} to {show(max(values))}"
 
 
+def measured(peers: dict) -> str:
+    rows = []
+    for row in peers["rows"]:
+        if values := row["ratios"]:
+            more = "times as long" if row["value"] == "seconds" else "times as much"
+            unit = "times as fast" if row["sense"] == "at least" else more
+            result = [f"**{digits(statistics.median(values))}** {unit}", spread(values), digits(row["best"])]
+        else:
+            result = [row["missing"], "", ""]
+        against = "Snell, one thread" if row["peer"] == "Snell" else row["peer"]
+        what = row["what"].replace("two threads against one:", "two threads:")
+        rows.append([what, against, *result])
+    return table(["what", "against", "Snell is, or takes", "spread", "best times"], rows)
+
+
 def goals(peers: dict) -> str:
     rows = []
     for row in peers["rows"]:
@@ -87,12 +108,14 @@ def goals(peers: dict) -> str:
             median = statistics.median(values)
             reached = median >= row["goal"] if row["sense"] == "at least" else median <= row["goal"]
             # Bytes do not mind other jobs.
-            verdict = "disturbed" if disturbed(peers) and row["value"] == "seconds" else "yes" if reached else "no"
-            result = [f"**{digits(median)}**", spread(values), digits(row["best"]), verdict]
+            verdict = "disturbed" if disturbed(peers) and row["value"] == "seconds" else "yes" if reached else "not yet"
+            result = [digits(median), verdict]
         else:
-            result = [row["missing"], "", "", ""]
-        rows.append([row["number"], row["what"], row["peer"], goal, *result])
-    return table(["", "what", "against", "goal", "measured", "spread", "best times", "met"], rows)
+            result = [row["missing"], ""]
+        rows.append([row["what"], row["peer"], goal, *result])
+    reached = sum(row[-1] == "yes" for row in rows)
+    head = f"<details><summary>Goals, of which {reached} of {len(rows)} are reached</summary>\n"
+    return "\n".join([head, table(["what", "against", "goal", "measured", "reached"], rows), "</details>\n"])
 
 
 def times(peers: dict) -> str:
@@ -118,7 +141,7 @@ def agreement(peers: dict) -> str:
 
 
 def compared(peers: dict) -> str:
-    parts = ["## Against peers\n", heading(peers), goals(peers), HOW]
+    parts = ["## Against peers\n", measured(peers), heading(peers), HOW, goals(peers)]
     if peers["agreement"]:
         parts += ["Do Snell and Embree find the same?\n", agreement(peers)]
     if "flakes" in peers:
@@ -211,7 +234,7 @@ def kernels(section: dict) -> str:
 def main() -> None:
     found = results()
     sections = {"peers": compared, "growth": grown, "kernels": kernels}
-    PAGE.write_text("\n".join([HEAD, *(write(found[name]) for name, write in sections.items() if name in found)]))
+    PAGE.write_text("\n".join([HEAD, *(write(found[name]) for name, write in sections.items() if name in found), FOOT]))
     print(f"written: {PAGE.relative_to(ROOT)}")
 
 
