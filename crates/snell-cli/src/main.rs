@@ -19,9 +19,11 @@ mod signals;
 mod solid_text;
 
 use args::{Arguments, Command};
+use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser};
 use excerpt::plain;
 use say::{Failure, Outcome, USAGE};
+use snell_formats::Report;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
@@ -41,6 +43,13 @@ fn main() -> ExitCode {
 
 /// Help and version, or what is wrong with what was typed.
 fn answer_with(answer: &clap::Error) -> Outcome {
+    if answer.kind() == ErrorKind::InvalidUtf8
+        && let Some(odd) = std::env::args_os().find(|argument| argument.to_str().is_none())
+    {
+        let report = Report::error(format!("`{}` is no UTF-8 text", odd.to_string_lossy()));
+        let help = "rename the file, or go into its folder and use a name without such bytes";
+        return Err(Failure::new(USAGE, report.help(help)));
+    }
     // What was typed stands in the answer as it is, and may steer a terminal: it is asked again without that.
     let typed = std::env::args_os().map(|argument| plain(&argument.to_string_lossy()));
     let again = Arguments::try_parse_from(typed).err().filter(|again| again.kind() == answer.kind());

@@ -158,19 +158,18 @@ impl<'a> PixelTracer<'a> {
     }
 }
 
-/// Every number below `count` once, each far from the last ones: bands of sky and bands of glass take turns, so that the
-/// pixels that are finished tell how long the others will take. Steps of the golden ratio leave no large gap (Weyl 1916).
-fn band_of_turn(turn: usize, count: usize) -> usize {
+/// Every number below `count` once, each far from the last ones: sky and glass take turns, so that the pixels that are finished
+/// tell how long the others will take. Steps of the golden ratio leave no large gap (Weyl 1916).
+fn nth(turn: u64, count: u64) -> u64 {
     let gcd = |mut a: u64, mut b: u64| {
         while b != 0 {
             (a, b) = (b, a % b);
         }
         a
     };
-    let count = count as u64;
     let golden = (count as f64 * 0.618_033_988_749_895) as u64;
     let step = (golden.max(1)..=count).find(|&step| gcd(step, count) == 1).unwrap_or(1);
-    (turn as u64 * step % count) as usize
+    turn * step % count
 }
 
 /// What one thread does.
@@ -186,10 +185,10 @@ impl Kernel for Worker<'_, '_> {
 
 /// One row of tiles, and its part of the film.
 ///
-/// A thread takes a band of its own and goes from left to right, so that the memory it touches is near; when no band is left,
-/// it helps the others. Neighbours in time are far from each other in the picture ([`band_of_turn`]).
+/// A thread takes a band of its own, so that the memory it touches is near; when no band is left, it helps the others.
+/// Neighbours in time, bands and tiles, are far from each other in the picture ([`nth`]).
 struct Band<'a> {
-    /// How many of its tiles have been taken, from the left.
+    /// How many of its tiles have been taken.
     taken: AtomicU64,
     film: Mutex<BandOfFilm<'a>>,
 }
@@ -240,7 +239,7 @@ impl Shared<'_> {
         let mut tracer = Tracer::<L, ()>::new(self.world, self.options.cancel, ());
         let count = self.bands.len();
         let own = std::iter::from_fn(|| Some(self.next_band.fetch_add(1, Ordering::Relaxed)));
-        let own = own.take_while(|&turn| turn < count).map(|turn| band_of_turn(turn, count));
+        let own = own.take_while(|&turn| turn < count).map(|turn| nth(turn as u64, count as u64) as usize);
         for band in own.chain(0..count) {
             while let Some(tile) = self.take_tile(band) {
                 let rays_before = tracer.statistics.rays.total();
@@ -257,12 +256,12 @@ impl Shared<'_> {
 
     /// The next tile of a band, if there is one and nobody has cancelled.
     fn take_tile(&self, band: usize) -> Option<Crop> {
-        let column = self.bands[band].taken.fetch_add(1, Ordering::Relaxed);
-        if column >= self.columns() || self.options.cancel.is_some_and(|c| c.load(Ordering::Relaxed)) {
+        let turn = self.bands[band].taken.fetch_add(1, Ordering::Relaxed);
+        if turn >= self.columns() || self.options.cancel.is_some_and(|c| c.load(Ordering::Relaxed)) {
             return None;
         }
         let (size, crop) = (self.tile_size(), &self.crop);
-        let (left, top) = (column * size, band as u64 * size);
+        let (left, top) = (nth(turn, self.columns()) * size, band as u64 * size);
         let width = size.min(u64::from(crop.width) - left) as u32;
         let height = size.min(u64::from(crop.height) - top) as u32;
         Some(Crop { x: crop.x + left as u32, y: crop.y + top as u32, width, height })
@@ -291,17 +290,17 @@ impl Shared<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::band_of_turn;
+    use super::nth;
 
     #[test]
-    fn every_band_has_its_turn_and_neighbours_in_time_are_far_apart() {
+    fn every_number_has_its_turn_and_neighbours_in_time_are_far_apart() {
         for count in 1..300 {
-            let order: Vec<usize> = (0..count).map(|turn| band_of_turn(turn, count)).collect();
+            let order: Vec<u64> = (0..count).map(|turn| nth(turn, count)).collect();
             let mut sorted = order.clone();
             sorted.sort_unstable();
             assert_eq!(sorted, (0..count).collect::<Vec<_>>());
             // Halves are sampled evenly from the first tenth on, so that a rate tells the time left.
-            let begun = &order[..count.div_ceil(10)];
+            let begun = &order[..count.div_ceil(10) as usize];
             let upper = begun.iter().filter(|&&band| band < count / 2).count();
             assert!(upper.abs_diff(begun.len() - upper) <= 1 + begun.len() / 4, "{count}: {begun:?}");
         }

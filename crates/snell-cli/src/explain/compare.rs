@@ -15,6 +15,7 @@ use std::fmt::Write;
 /// Compares a pixel of the scene with that of the scene that `args` ask for.
 pub fn run(args: &ExplainArgs, changes: &Changes, pixel: [u32; 2]) -> Outcome {
     let mut asked = ask(args, changes)?;
+    asked.warn();
     if let Some(object) = &args.without {
         known_object(&asked.world, object)?;
         remove(&mut asked.loaded.scene, object);

@@ -32,6 +32,11 @@ struct Asked {
 }
 
 impl Asked {
+    /// Says what is odd about it.
+    fn warn(&self) {
+        say::reports(&self.loaded.warnings_with(&self.world));
+    }
+
     fn names(&self) -> Names<'_> {
         Names { world: &self.world, scene: &self.loaded.scene }
     }
@@ -62,7 +67,9 @@ fn no_pixel([x, y]: [u32; 2], [width, height]: [u32; 2]) -> Failure {
 pub fn run(args: &ExplainArgs) -> Outcome {
     let changes = Changes::from(args);
     if let Some(object) = &args.find {
-        return find::run(&ask(args, &changes)?, object, args);
+        let asked = ask(args, &changes)?;
+        asked.warn();
+        return find::run(&asked, object, args);
     }
     let Some(pixel) = args.pixel else {
         let report =
@@ -74,6 +81,7 @@ pub fn run(args: &ExplainArgs) -> Outcome {
         return compare::run(args, &changes, pixel);
     }
     let asked = ask(args, &changes)?;
+    asked.warn();
     if let Some(light) = &args.light {
         known_light(&asked, light)?;
     }
@@ -117,10 +125,6 @@ fn ask(args: &ExplainArgs, changes: &Changes) -> Result<Asked, Failure> {
     };
     recipe.apply(&mut loaded.scene);
     let world = loaded.world().or_fail(SCENE)?;
-    let mut warnings = loaded.warnings_with(&world);
-    // What is odd about a scene is told when it is rendered; that what is explained is not what is in the file, here too.
-    warnings.retain(|report| report.warning.is_some_and(|code| code.starts_with("W10")));
-    say::reports(&warnings);
     Ok(Asked { recipe, loaded, world })
 }
 

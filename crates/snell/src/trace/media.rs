@@ -174,7 +174,7 @@ impl<'a> Media<'a> {
 
     /// What of the light from `distance` away reaches a point in this set, straight through what is transparent: black behind
     /// an opaque surface. At each interface the light loses what Fresnel reflects at the angle of its straight way on the side
-    /// of the thinner medium, so that a rim is not black; between them, what the media absorb. Between parallel faces they do
+    /// of the thinner medium, so that nothing is totally reflected; between them, what the media absorb. Between parallel faces they do
     /// so over the refracted way, as in a plate or a stack of plates, elsewhere over the straight one.
     pub(super) fn light_along(&mut self, way: &Leaving, distance: f64, mut set: u32) -> Rgb {
         let world = self.world;

@@ -15,8 +15,11 @@ pub(super) fn materials(scene: &Scene, found: &mut Findings) {
         for (key, value) in [("ka", m.ka), ("kd", m.kd), ("ks", m.ks), ("kr", m.kr), ("ko", m.ko)] {
             found.color(&at(key), value);
             if let Some(below) = value.to_array().into_iter().find(|&v| v < 0.0) {
-                let message =
-                    format!("{key} of material `{name}` is {below}: light is taken away where it should be added");
+                let what = match key {
+                    "ko" => "more goes through than arrives",
+                    _ => "light is taken away where it should be added",
+                };
+                let message = format!("{key} of material `{name}` is {below}: {what}");
                 found.warning(WarningCode::NegativeCoefficient, at(key), message);
             }
         }
