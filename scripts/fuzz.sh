@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Fuzzes every reader with libFuzzer, on the stable compiler. SECONDS_EACH: how long, 60 if not given.
+# Fuzzes the command with files that are nearly right, and every reader with libFuzzer, on the stable compiler. SECONDS_EACH: how long, 60 if not given.
 source "$(dirname "$0")/lib.sh"
 
 need_rust
@@ -10,6 +10,9 @@ export RUSTFLAGS='--cfg fuzzing -Cpasses=sancov-module -Cllvm-args=-sanitizer-co
     -Cllvm-args=-sanitizer-coverage-trace-compares -Ccodegen-units=1'
 host=$(rustc -vV | sed -n 's/^host: //p')
 cargo build --locked --release --features run --manifest-path fuzz/Cargo.toml --target "$host"
+printf '\n── fuzzing the command\n'
+RUSTFLAGS='' cargo build --locked --quiet --package snell-cli --profile ci
+python3 scripts/fuzz_command.py target/ci/snell "${SECONDS_EACH:-60}"
 for target in scene driver obj ply stl nff picture; do
     printf '\n── fuzzing %s\n' "$target"
     mkdir -p "fuzz/corpus/$target"

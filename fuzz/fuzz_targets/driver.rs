@@ -4,11 +4,11 @@
 use libfuzzer_sys::fuzz_target;
 use snell::render::{Options, render};
 use snell::world::World;
-use snell_formats::Source;
 use snell_formats::driver::{Dialect, parse};
+use snell_formats::text::decode;
 
-fuzz_target!(|text: &str| {
-    let source = Source::new("fuzz", text);
+fuzz_target!(|bytes: &[u8]| {
+    let (source, _) = decode("fuzz", bytes);
     for dialect in [None].into_iter().chain(Dialect::ALL.map(Some)) {
         match parse(&source, dialect) {
             Err(reports) => {

@@ -4,11 +4,12 @@
 use libfuzzer_sys::fuzz_target;
 use snell::render::{Options, render};
 use snell::world::World;
-use snell_formats::Source;
 use snell_formats::nff::parse;
+use snell_formats::text::decode;
 
-fuzz_target!(|text: &str| {
-    match parse(&Source::new("fuzz", text)) {
+fuzz_target!(|bytes: &[u8]| {
+    let (source, _) = decode("fuzz", bytes);
+    match parse(&source) {
         Err(report) => {
             let (source, range) = report.place.unwrap();
             assert!(source.text.get(range).is_some());

@@ -3,11 +3,11 @@
 
 use libfuzzer_sys::fuzz_target;
 use snell::geometry::mesh::NormalWeights;
-use snell_formats::Source;
 use snell_formats::model::{parse_mtl, parse_obj};
+use snell_formats::text::decode;
 
-fuzz_target!(|text: &str| {
-    let source = Source::new("fuzz", text);
+fuzz_target!(|bytes: &[u8]| {
+    let (source, _) = decode("fuzz", bytes);
     let _ = parse_mtl(&source);
     if let Ok(model) = parse_obj(&source) {
         let mesh = model.mesh;

@@ -4,7 +4,7 @@
 
 use libfuzzer_sys::fuzz_target;
 use snell::geometry::solid::{Options, check, repair};
-use snell_formats::model::parse_ply;
+use snell_formats::model::{Model, parse_ply};
 
 fuzz_target!(|data: &[u8]| {
     match parse_ply("fuzz", data) {
@@ -13,7 +13,7 @@ fuzz_target!(|data: &[u8]| {
                 assert!(source.text.get(range).is_some());
             }
         }
-        Ok(mesh) => {
+        Ok(Model { mesh, .. }) => {
             assert!(mesh.faces.iter().flatten().all(|&v| (v as usize) < mesh.vertices.len()));
             check(&mesh);
             let (mended, _) = repair(&mesh, &Options::default());

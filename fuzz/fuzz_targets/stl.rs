@@ -3,7 +3,7 @@
 
 use libfuzzer_sys::fuzz_target;
 use snell::geometry::solid::check;
-use snell_formats::model::parse_stl;
+use snell_formats::model::{Model, parse_stl};
 
 fuzz_target!(|data: &[u8]| {
     match parse_stl("fuzz", data) {
@@ -12,7 +12,7 @@ fuzz_target!(|data: &[u8]| {
                 assert!(source.text.get(range).is_some());
             }
         }
-        Ok(mesh) => {
+        Ok(Model { mesh, .. }) => {
             assert!(mesh.faces.iter().flatten().all(|&v| (v as usize) < mesh.vertices.len()));
             check(&mesh);
         }

@@ -592,3 +592,226 @@ fn info_schema_and_completions_answer() {
         assert!(stdout(&run(at, &["completions", shell])).contains("snell"));
     }
 }
+
+/// A picture knows its scene, and what it is asked to be otherwise.
+#[test]
+fn a_picture_can_be_made_again_with_changes() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let made = |arguments: &[&str]| render(at, &[arguments, &["-o", "b.npy"]].concat());
+    let same = |arguments: &[&str]| {
+        render(at, &[arguments, &["-o", "c.npy"]].concat());
+        run(at, &["diff", "b.npy", "c.npy"]);
+    };
+    render(
+        at,
+        &[&["lecture/default", "--depth", "3", "--set", "material.glass.eta=1.7", "-o", "a.png"], TINY].concat(),
+    );
+    let first = [&["lecture/default", "--depth", "3", "--set", "material.glass.eta=1.7"], TINY].concat();
+    made(&["--from", "a.png"]);
+    same(&first);
+    made(&["--from", "a.png", "--spp", "4", "--set", "material.glass.eta=1.2"]);
+    same(&[&first[..], &["--spp", "4", "--set", "material.glass.eta=1.2"]].concat());
+    // What is set in the scene wins over what the picture remembers of its settings.
+    made(&["--from", "a.png", "--set", "render.max_depth=1"]);
+    same(&[&["lecture/default", "--depth", "1", "--set", "material.glass.eta=1.7"], TINY].concat());
+    made(&["--from", "a.png", "--size", "30x20"]);
+    same(&["lecture/default", "--depth", "3", "--set", "material.glass.eta=1.7", "--size", "30x20"]);
+    made(&["--from", "a.png", "--integrator", "whitted"]);
+    same(&[&first[..], &["--integrator", "whitted"]].concat());
+    made(&["--from", "a.png", "--crop", "3,4,5,6"]);
+    same(&[&first[..], &["--crop", "3,4,5,6"]].concat());
+    // And the change is remembered in turn.
+    render(at, &["--from", "a.png", "--set", "ambient=0.7", "-o", "d.png"]);
+    render(at, &["--from", "d.png", "-o", "e.png"]);
+    run(at, &["diff", "d.png", "e.png"]);
+    let info = stdout(&run(at, &["info", "e.png"]));
+    assert!(info.contains("changed      material.glass.eta=1.7\nchanged      ambient=0.7"), "{info}");
+    // Ways of light, too.
+    for (arguments, name) in [(["--paths", "3"], "p.exr"), (["--only", "green"], "p.png")] {
+        render(at, &[&["lecture/default"], TINY, &arguments, &["-o", name]].concat());
+        render(at, &["--from", name, "-o", &format!("again-{name}")]);
+        run(at, &["diff", name, &format!("again-{name}")]);
+        assert!(fs::read(at.join(name)).unwrap() == fs::read(at.join(format!("again-{name}"))).unwrap(), "{name}");
+    }
+}
+
+#[test]
+fn a_picture_can_be_explained() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    render(at, &[&["lecture/default", "--set", "material.glass.eta=1.7", "-o", "a.png"], TINY].concat());
+    let explain = |arguments: &[&str]| stdout(&run(at, &[&["explain"], arguments].concat()));
+    let of_scene = [&["lecture/default", "12,11"], TINY].concat();
+    let changed = explain(&[&of_scene[..], &["--set", "material.glass.eta=1.7"]].concat());
+    let said = explain(&["a.png", "12,11"]);
+    assert!(said.starts_with("lecture/default, pixel 12,11 of 24 x 24"), "{said}");
+    // The numbers below "with material.glass.eta=1.7:" are those of the picture.
+    assert!(changed.contains(said.lines().nth(1).unwrap()), "{changed}\n{said}");
+    // A part of a picture: columns and rows are the part's.
+    render(at, &[&["lecture/default", "--crop", "10,9,5,5", "-o", "part.exr"], TINY].concat());
+    assert_eq!(explain(&["part.exr", "2,2", "--json"]), explain(&[&of_scene[..], &["--json"]].concat()));
+    let outside = snell(at, &["explain", "part.exr", "5,2"]);
+    assert!(
+        outside.status.code() == Some(2) && stderr(&outside).contains("columns are 0 to 4"),
+        "{}",
+        stderr(&outside)
+    );
+    // A change may be what makes a scene of it.
+    fs::write(at.join("t.obj"), TRIANGLE).unwrap();
+    fs::write(
+        at.join("open.toml"),
+        GLASS.replace("[[sphere]]\ncenter = [0, 1, 0]\nradius = 1", "[[mesh]]\nfile = 't.obj'"),
+    )
+    .unwrap();
+    assert_eq!(snell(at, &["explain", "open.toml", "12,12"]).status.code(), Some(3));
+    let what_if = run(at, &["explain", "open.toml", "12,12", "--set", "mesh.1.open=opaque"]);
+    assert!(stderr(&what_if).contains("not a solid") && stdout(&what_if).contains("with mesh.1.open=opaque"));
+}
+
+#[test]
+fn standard_input_and_output() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let text = stdout(&run(at, &["scenes", "--save", "lecture/default", "-o", "-"]));
+    let piped = |arguments: &[&str], input: &str| {
+        let mut child = command(at, arguments)
+            .stdin(std::process::Stdio::piped())
+            .stdout(std::process::Stdio::piped())
+            .stderr(std::process::Stdio::piped())
+            .spawn()
+            .unwrap();
+        std::io::Write::write_all(&mut child.stdin.take().unwrap(), input.as_bytes()).unwrap();
+        child.wait_with_output().unwrap()
+    };
+    for format in ["png", "ppm", "exr", "npy"] {
+        let through = piped(&[&["render", "-", "-o", "-", "--format", format], TINY].concat(), &text);
+        assert!(through.status.success(), "{}", stderr(&through));
+        let name = format!("a.{format}");
+        fs::write(at.join(&name), &through.stdout).unwrap();
+        render(at, &[&["lecture/default", "-o", &format!("b.{format}")], TINY].concat());
+        run(at, &["diff", &name, &format!("b.{format}")]);
+    }
+    // What it is, is told by how it starts: JSON, a driver, NFF.
+    let json = stdout(&run(at, &["convert", "lecture/default", "-o", "s.json"]))
+        + &fs::read_to_string(at.join("s.json")).unwrap();
+    let nff = "v\nfrom 0 0 9\nat 0 0 0\nup 0 1 0\nangle 40\nhither 1\nresolution 8 8\nf 1 1 1 1 0 0 0 0\ns 0 0 0 1\n";
+    triangle_scene(at);
+    for (input, expected) in
+        [(&*json, "lecture, depth 6"), (DRIVER, "course2018"), (nff, "whitted, depth 32"), (&text, "lecture, depth 6")]
+    {
+        let info = piped(&["info", "-"], input);
+        assert!(stdout(&info).contains(expected), "{}{}", stdout(&info), stderr(&info));
+    }
+    let empty = piped(&["render", "-", "-o", "x.png"], "");
+    assert!(empty.status.code() == Some(3) && stderr(&empty).starts_with("error"), "{}", stderr(&empty));
+    // The name of the picture is made of what is known.
+    fs::write(at.join("balls.nff"), nff).unwrap();
+    render(at, &["balls.nff"]);
+    assert!(at.join("balls.png").exists());
+}
+
+/// What is large goes beside a converted scene, to the bit; and what is beside it is found from another folder.
+#[test]
+fn a_converted_scene_is_the_same_scene_anywhere() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let mut nff =
+        "b 0.2 0.3 0.4\nv\nfrom 0 0 9\nat 0 0 0\nup 0 1 0\nangle 40\nhither 1\nresolution 24 24\nl 3 4 9\n".to_owned();
+    nff.push_str("f 0.9 0.1 0.3 1 0 0 0 0\n");
+    for i in 0..1500u32 {
+        let [x, y, z] = [13, 29, 7].map(|step| f64::from(i * step % 101) / 25.0 - 2.0 + f64::from(i) * 1e-9);
+        writeln!(nff, "p 3\n{x} {y} {z}\n{} {y} {z}\n{x} {} {z}", x + 0.3, y + 0.2).unwrap();
+    }
+    fs::write(at.join("many.nff"), nff).unwrap();
+    fs::create_dir(at.join("sub")).unwrap();
+    render(at, &["many.nff", "-o", "a.npy"]);
+    for output in ["sub/many.toml", "sub/many.json"] {
+        let said = stderr(&run(at, &["convert", "many.nff", "-o", output, "--force"]));
+        assert!(said.contains("many-mesh-1.ply") && fs::metadata(at.join(output)).unwrap().len() < 4000, "{said}");
+        render(at, &[output, "-o", "b.npy"]);
+        run(at, &["diff", "a.npy", "b.npy"]);
+    }
+    // Not over what somebody else has made.
+    fs::write(at.join("sub/other-mesh-1.ply"), "mine").unwrap();
+    let refused = snell(at, &["convert", "many.nff", "-o", "sub/other.toml", "--force"]);
+    assert!(refused.status.code() == Some(1) && !at.join("sub/other.toml").exists(), "{}", stderr(&refused));
+    assert_eq!(fs::read(at.join("sub/other-mesh-1.ply")).unwrap(), b"mine");
+    // Textures, of the scene and of its models, are found from the new place.
+    render(at, &[&["lecture/default", "-o", "wall.png"], TINY].concat());
+    fs::write(
+        at.join("t.obj"),
+        "mtllib t.mtl\nv -1 -1 0\nv 1 -1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl m\nf 1/1 2/2 3/3\n",
+    )
+    .unwrap();
+    fs::write(at.join("t.mtl"), "newmtl m\nKa 1 1 1\nmap_Kd wall.png\n").unwrap();
+    let scene = GLASS.replace(
+        "[material.floor]\nkd = 1",
+        "[material.floor]\nka = 1\ntexture = 't'\n[texture.t]\nimage = 'wall.png'",
+    );
+    fs::write(at.join("s.toml"), format!("{scene}[sky]\nimage = 'wall.png'\n[[mesh]]\nfile = 't.obj'\n")).unwrap();
+    render(at, &["s.toml", "-o", "a.npy"]);
+    run(at, &["convert", "s.toml", "-o", "sub/s.toml"]);
+    run(&at.join("sub"), &["render", "-q", "s.toml", "-o", "../b.npy"]);
+    run(at, &["diff", "a.npy", "b.npy"]);
+}
+
+/// Glass of a model's own materials: a solid where the mesh is one, panes elsewhere; the map of a material without `Kd`.
+#[test]
+fn materials_of_models_are_drawn_or_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let tetra = "mtllib m.mtl\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
+    let scene = "snell = 1\nambient = 1\nbackground = [0, 0, 1]\n[render]\nintegrator = 'whitted'\nsize = [9, 9]\n[camera]\n\
+                 eye = [0.2, 0.2, 9]\nlook_at = [0.2, 0.2, 0]\nup = [0, 1, 0]\nfov = 4\n[[mesh]]\nfile = 't.obj'\n";
+    fs::write(at.join("s.toml"), scene).unwrap();
+    fs::write(at.join("m.mtl"), "newmtl m\nKa 1 0 0\nd 0.25\nNi 1.5\n").unwrap();
+    let explained = |arguments: &[&str]| stdout(&run(at, &[&["explain", "s.toml", "4,4"], arguments].concat()));
+    fs::write(at.join("t.obj"), tetra).unwrap();
+    assert!(explained(&[]).contains("refracted"), "{}", explained(&[]));
+    assert!(explained(&["--json"]).contains("\"eta_behind\":1.5"), "a solid of glass");
+    fs::write(at.join("t.obj"), tetra.replace("f 1 4 3\n", "")).unwrap();
+    assert!(
+        explained(&["--json"]).contains("\"eta_behind\":1.0") || explained(&["--json"]).contains("\"eta_behind\":1,"),
+        "{}",
+        explained(&["--json"])
+    );
+    // What another model of light does not draw is said, and so is what none does.
+    fs::write(at.join("m.mtl"), "newmtl m\nKa 1 0 0\nd 0.25\nTf 1 0 0\nPm 1\n").unwrap();
+    let said = stderr(&run(at, &["render", "s.toml", "--integrator", "lecture", "-o", "x.png"]));
+    assert!(said.contains("`d` or `Tr`") && said.contains("W006"), "{said}");
+    assert!(said.contains("`Tf`, `Pm`") && said.contains("W109"), "{said}");
+    // Many names that are nowhere are one warning.
+    let many: Vec<String> = (0..20_000).map(|i| format!("usemtl n{i}\nf 1 2 3\n")).collect();
+    fs::write(at.join("t.obj"), format!("{tetra}{}", many.concat())).unwrap();
+    let said = stderr(&run(at, &["render", "s.toml", "--integrator", "lecture", "-o", "x.png"]));
+    assert!(said.matches("W104").count() == 1 && said.contains("and 19980 more"), "{said}");
+}
+
+#[test]
+fn info_and_completions_know_names() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let shapes = "[[sphere]]\ncenter = [2, 1, 0]\nradius = 1\nmaterial = 'glass'\n\
+                  [[plane]]\ncenter = [0, -1, 0]\nsize = [2, 2]\nmaterial = 'floor'\n[[box]]\nname = 'crate'\nmin = [0, 0, 0]\n\
+                  max = [1, 1, 1]\nmaterial = 'floor'\n";
+    fs::write(at.join("s.toml"), format!("{GLASS}{shapes}")).unwrap();
+    let info = stdout(&run(at, &["info", "s.toml"]));
+    for expected in [
+        "sphere 1: ",
+        "sphere 2: ",
+        "plane 2: ",
+        "crate: from",
+        "near -5",
+        "bounds      (-4.5, -1, -4.5) to (4.5, 2, 4.5)",
+        "light 1: ",
+    ] {
+        assert!(info.contains(expected), "{expected} in\n{info}");
+    }
+    for shell in ["bash", "zsh", "fish"] {
+        let script = stdout(&run(at, &["completions", shell]));
+        assert!(script.contains("gallery/brilliant"), "{shell}");
+    }
+    let help = stdout(&run(at, &["render", "--help"]));
+    assert!(!help.contains("gallery/brilliant"), "{help}");
+}
