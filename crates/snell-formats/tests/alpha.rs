@@ -128,6 +128,27 @@ fn half_a_card_shows_half_of_what_is_behind() {
     assert_eq!(inside, [1.5], "glass on both sides of it, and no gap of air that mirrors");
 }
 
+/// In air a veil is a pane without thickness, of index 1 and so much opacity: another way through the engine, and the same picture.
+#[test]
+fn a_veil_is_a_pane_of_nothing() {
+    let with = |alpha: f32, pane: bool| {
+        let mut scene = room();
+        pictured(&mut scene, "veil", [3, 2], |x, y| ([0.3 * x as f32, 0.5, y as f32], if pane { 1.0 } else { alpha }));
+        let look = Material { ks: Rgb::gray(0.3), kr: Rgb::gray(0.4), ..scene.materials["veil"].clone() };
+        let (ko, thickness) = if pane { (f64::from(alpha), Some(0.0)) } else { (1.0, None) };
+        scene.materials["veil"] = Material { ko: Rgb::gray(ko), thickness, ..look };
+        furnish(&mut scene, "veil");
+        // In glass a pane of index 1 is a gap, and a veil is not.
+        scene.planes.remove(3);
+        scene.lathes[0].instances.truncate(2);
+        scene
+    };
+    for alpha in [0.125, 0.5, 0.75] {
+        let (veil, pane) = (picture(&with(alpha, false)), picture(&with(alpha, true)));
+        assert!(alike(&veil, &pane) == veil.pixels.len(), "{} of {}", alike(&veil, &pane), veil.pixels.len());
+    }
+}
+
 /// A ball with holes has a near wall and a far one, each once.
 #[test]
 fn a_ball_has_two_walls() {
