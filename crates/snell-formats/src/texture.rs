@@ -1,16 +1,17 @@
 //! Pictures as textures.
 
-use crate::picture::{self, Format};
+use crate::picture::{self, Format, Picture};
 use crate::report::Report;
 use snell::film::Rgb;
 use snell::film::transfer::from_srgb;
 use snell::texture::Image;
 use std::path::Path;
 
-/// Reads a PNG (8 or 16 bit, gray, colour or palette; alpha is left out), PPM, EXR or NPY picture of at most 2²⁶ pixels as a
-/// texture in linear light. Integers become 0 to 1; with `srgb` they are decoded by the curve of IEC 61966-2-1, as colours
+/// Reads a PNG (8 or 16 bit, gray, colour or palette), PPM, EXR or NPY picture of at most 2²⁶ pixels as a texture in linear
+/// light, with the alpha of PNG and EXR. Integers become 0 to 1; with `srgb` they are decoded by the curve of IEC 61966-2-1, as colours
 /// want it. What is no colour, like a map of heights, and what was written with `transfer = "linear"` want `srgb` off.
-/// Floating point numbers are taken as they are; of an EXR the first layer with red, green and blue, its data window.
+/// Floating point numbers are taken as they are; of an EXR the first layer with red, green and blue, its data window. An EXR's
+/// colours are multiplied by its alpha, by its convention, and are divided by it here.
 ///
 /// # Errors
 /// When the file is not such a picture, is cut off or too large, or holds a number that is not finite as `f32`.
@@ -20,7 +21,7 @@ pub fn read_image(path: &Path, srgb: bool) -> Result<Image, Report> {
         let (from, to) = (path.display(), path.with_extension("png"));
         report.help(format!("{known}; convert others, for example: magick {from} {}", to.display()))
     })?;
-    let picture = picture::read_as(path, |max| {
+    let mut picture = picture::read_as(path, |max| {
         let linear = |code: u32, max: u32| {
             let value = f64::from(code) / f64::from(max);
             (if srgb { from_srgb(value) } else { value }) as f32
@@ -37,7 +38,18 @@ pub fn read_image(path: &Path, srgb: bool) -> Result<Image, Report> {
         None if path.is_file() => report.help("save it again as .png, smaller if it is too large"),
         _ => report,
     })?;
-    Image::new(picture.width, picture.height, picture.pixels).map_err(|why| {
+    let is_exr = picture.max.is_none();
+    if let Some(alpha) = picture.alpha.as_ref().filter(|_| is_exr) {
+        for (pixel, &alpha) in picture.pixels.iter_mut().zip(alpha).filter(|&(_, &alpha)| alpha > 0.0 && alpha < 1.0) {
+            *pixel = pixel.map(|c| c / alpha);
+        }
+    }
+    let Picture { width, height, pixels, .. } = picture;
+    let image = match picture.alpha {
+        None => Image::new(width, height, pixels),
+        Some(alpha) => Image::with_alpha(width, height, pixels, alpha),
+    };
+    image.map_err(|why| {
         let help = "clip its largest numbers and replace those that are none";
         Report::error(format!("`{}` is no texture: {why}", path.display())).help(help)
     })
@@ -50,13 +62,16 @@ mod tests {
     use snell::film::transfer::{Encoding, Rounding, Transfer};
     use snell::film::{Crop, Film};
 
-    /// 2 x 1 pixels as PNG.
-    fn write_png(path: &Path, color: ColorType, depth: BitDepth, data: &[u8]) {
+    /// 2 x 1 pixels as PNG, perhaps with a transparent colour or alphas of the palette.
+    fn write_png(path: &Path, color: ColorType, depth: BitDepth, data: &[u8], transparent: Option<&[u8]>) {
         let mut encoder = ::png::Encoder::new(std::fs::File::create(path).unwrap(), 2, 1);
         encoder.set_color(color);
         encoder.set_depth(depth);
         if color == ColorType::Indexed {
             encoder.set_palette(vec![10, 20, 30, 255, 0, 128]);
+        }
+        if let Some(transparent) = transparent {
+            encoder.set_trns(transparent.to_vec());
         }
         encoder.write_header().unwrap().write_image_data(data).unwrap();
     }
@@ -74,7 +89,7 @@ mod tests {
             (ColorType::Rgba, BitDepth::Eight, &[1, 2, 3, 0, 4, 5, 6, 9], 255, [[1, 2, 3], [4, 5, 6]]),
             (ColorType::Indexed, BitDepth::Eight, &[1, 0], 255, [[255, 0, 128], [10, 20, 30]]),
         ] {
-            write_png(&path, color, depth, data);
+            write_png(&path, color, depth, data, None);
             let value = |code: u16| f64::from(code) / f64::from(max);
             let linear = read_image(&path, false).unwrap();
             assert_eq!((linear.width(), linear.height()), (2, 1));
@@ -86,6 +101,57 @@ mod tests {
                 "{color:?} {depth:?}"
             );
         }
+    }
+
+    #[test]
+    fn every_kind_of_alpha_is_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.png");
+        let (eight, sixteen) = (BitDepth::Eight, BitDepth::Sixteen);
+        for (color, depth, data, transparent, expected) in [
+            (ColorType::GrayscaleAlpha, eight, &[7, 0, 9, 255][..], None, Some([0.0, 1.0])),
+            (ColorType::GrayscaleAlpha, sixteen, &[0, 7, 255, 255, 0, 9, 0, 51], None, Some([1.0, 51.0 / 65535.0])),
+            (ColorType::Rgba, eight, &[1, 2, 3, 0, 4, 5, 6, 51], None, Some([0.0, 0.2])),
+            (ColorType::Rgba, eight, &[1, 2, 3, 255, 4, 5, 6, 255], None, None),
+            (ColorType::Indexed, eight, &[1, 0], Some(&[51][..]), Some([1.0, 0.2])),
+            (ColorType::Indexed, eight, &[1, 0], Some(&[255, 0]), Some([0.0, 1.0])),
+            (ColorType::Rgb, eight, &[1, 2, 3, 4, 5, 6], Some(&[0, 4, 0, 5, 0, 6]), Some([1.0, 0.0])),
+            (ColorType::Grayscale, BitDepth::One, &[0b0100_0000], Some(&[0, 1]), Some([1.0, 0.0])),
+            (ColorType::Grayscale, eight, &[3, 4], None, None),
+        ] {
+            write_png(&path, color, depth, data, transparent);
+            // Alpha is a share, whatever the curve of the colours.
+            for srgb in [true, false] {
+                let image = read_image(&path, srgb).unwrap();
+                let expected = expected.map(|alpha: [f64; 2]| alpha.map(|a| a as f32).to_vec());
+                assert_eq!(image.alpha().map(<[f32]>::to_vec), expected, "{color:?} {depth:?} {transparent:?}");
+            }
+        }
+    }
+
+    /// EXR's colours are multiplied by their alpha. What is not there has no colour, and what is more than there is there.
+    #[test]
+    fn the_alpha_of_exr_is_taken_out_of_its_colours() {
+        use exr::prelude::{Image as Layers, SpecificChannels, Vec2, WritableImage};
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.exr");
+        let write = |alphas: [f32; 4]| {
+            let channels = SpecificChannels::rgba(|at: Vec2<usize>| (0.25f32, 0.5f32, 1.0f32, alphas[at.x()]));
+            Layers::from_channels((4, 1), channels).write().to_file(&path).unwrap();
+            read_image(&path, true)
+        };
+        let image = write([1.0, 0.25, 0.0, 1.5]).unwrap();
+        let [whole, lifted]: [[f32; 3]; 2] = [[0.25, 0.5, 1.0], [1.0, 2.0, 4.0]];
+        assert_eq!(
+            (image.pixels(), image.alpha()),
+            (&[whole, lifted, whole, whole][..], Some(&[1.0, 0.25, 0.0, 1.0][..]))
+        );
+        assert_eq!(image.bilinear_with_alpha(0.625, 0.5).1, 0.0);
+        assert_eq!(write([1.0; 4]).unwrap().alpha(), None);
+        let report = write([1.0, f32::NAN, 1.0, 1.0]).unwrap_err();
+        assert!(report.message.contains("column 1, row 0") && report.help.is_some(), "{report}");
+        // Beyond what `f32` holds.
+        assert!(write([1.0, 1e-39, 1.0, 1.0]).is_err());
     }
 
     #[test]

@@ -2,6 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
+mod common;
+
+use common::leaves;
 use snell::explain::{Ending, Explanation, Names, Path, channels, explain, find, hits, layers};
 use snell::film::{Crop, Rgb};
 use snell::render::{Options, render, trace_pixel};
@@ -69,7 +72,8 @@ fn every_pixel_of_the_gallery_adds_up() {
     }
 }
 
-/// Thin panes, interfaces, patterns, spot lights, three samples; instances; glasses through each other; the course's models.
+/// Thin panes, interfaces, patterns, spot lights, three samples; instances; glasses through each other; leaves with holes; the
+/// course's models.
 #[test]
 fn every_pixel_of_hard_scenes_adds_up() {
     let course = |integrator| {
@@ -81,6 +85,7 @@ fn every_pixel_of_hard_scenes_adds_up() {
         ("windows".to_owned(), glass::windows()),
         ("blocks".to_owned(), glass::blocks()),
         ("bubbles".to_owned(), glass::bubbles()),
+        ("leaves".to_owned(), leaves()),
         ("course2018".to_owned(), course(Integrator::Course2018)),
         ("course2020".to_owned(), course(Integrator::Course2020)),
     ];
@@ -90,7 +95,7 @@ fn every_pixel_of_hard_scenes_adds_up() {
         (scene.render.size, scene.render.spp) = ([48, 48], 2);
         all.push((path.display().to_string(), scene));
     }
-    assert!(all.len() == 10);
+    assert!(all.len() == 11);
     for (name, scene) in all {
         adds_up(&name, &scene);
     }
@@ -99,7 +104,10 @@ fn every_pixel_of_hard_scenes_adds_up() {
 /// What was not followed adds at most its bound: the same picture, ten levels deeper.
 #[test]
 fn the_bounds_hold_ten_levels_deeper() {
+    let mut holes = leaves();
+    holes.render.size = [16, 16];
     let shallow = scenes("lecture/default", 24).into_iter().chain(scenes("gallery", 16));
+    let shallow = shallow.chain([("leaves".to_owned(), holes)]);
     for (name, mut scene) in shallow {
         (scene.render.max_depth, scene.render.min_throughput, scene.render.bands) = (2, 0.0, 3);
         let world = World::new(&scene).unwrap();
@@ -234,7 +242,10 @@ fn the_lectures_question_is_answered() {
 /// Whatever keeps a light away is named: with and without each blocker the diffuse light agrees with what is said.
 #[test]
 fn lights_are_on_or_someone_blocks_them() {
-    for (name, scene) in scenes("lecture/default", 40).into_iter().chain(scenes("gallery/window", 40)) {
+    let mut holes = leaves();
+    holes.render.size = [40, 40];
+    let all = scenes("lecture/default", 40).into_iter().chain(scenes("gallery/window", 40));
+    for (name, scene) in all.chain([("leaves".to_owned(), holes)]) {
         let world = World::new(&scene).unwrap();
         let mut blocked = 0;
         for number in 0..1600 {

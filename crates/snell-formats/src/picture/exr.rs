@@ -83,10 +83,17 @@ pub(super) fn read<P: Clone + 'static, F: Fn(Rgb) -> P + 'static>(
         .no_deep_data()
         .largest_resolution_level()
         .rgba_channels(
-            move |size, _| (size, vec![black.clone(); checked_pixels(size.0 as u64, size.1 as u64).unwrap_or(0)]),
-            move |(size, pixels), at, (r, g, b, _): (f32, f32, f32, f32)| {
-                if let Some(pixel) = pixels.get_mut(at.y() * size.0 + at.x()) {
+            move |size, (.., alpha)| {
+                let count = checked_pixels(size.0 as u64, size.1 as u64).unwrap_or(0);
+                (size, vec![black.clone(); count], alpha.is_some().then(|| vec![0.0; count]))
+            },
+            move |(size, pixels, alpha), at, (r, g, b, a): (f32, f32, f32, f32)| {
+                let at = at.y() * size.0 + at.x();
+                if let Some(pixel) = pixels.get_mut(at) {
                     *pixel = convert(Rgb::new(f64::from(r), f64::from(g), f64::from(b)));
+                }
+                if let Some(alpha) = alpha.as_mut().and_then(|alpha| alpha.get_mut(at)) {
+                    *alpha = a;
                 }
             },
         )
@@ -96,7 +103,7 @@ pub(super) fn read<P: Clone + 'static, F: Fn(Rgb) -> P + 'static>(
         .from_buffered(Cursor::new(bytes))
         .map_err(|e| e.to_string())?;
     let layer = image.layer_data;
-    let (size, pixels) = layer.channel_data.pixels;
+    let (size, pixels, alpha) = layer.channel_data.pixels;
     if pixels.is_empty() {
         return Err(format!("{} x {} is not a size that is read", size.0, size.1));
     }
@@ -104,5 +111,5 @@ pub(super) fn read<P: Clone + 'static, F: Fn(Rgb) -> P + 'static>(
         Some(AttributeValue::Text(text)) => String::from_utf8(text.as_slice().to_vec()).ok(),
         _ => None,
     };
-    Ok(Picture { width: size.0, height: size.1, pixels, max: None, recipe })
+    Ok(Picture { width: size.0, height: size.1, pixels, alpha, max: None, recipe })
 }

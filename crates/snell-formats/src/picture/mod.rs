@@ -118,6 +118,9 @@ pub struct Picture<P = Rgb> {
     pub height: usize,
     /// Pixels, row by row, row 0 on top. Integers as they stand in the file.
     pub pixels: Vec<P>,
+    /// Alpha from 0 to 1 as in the file, in the same order; `None` where the file has no such channel. PNG's colours are not
+    /// multiplied by it; EXR's are.
+    pub alpha: Option<Vec<f32>>,
     /// The largest integer (255, 65535), or `None` for floating point.
     pub max: Option<u32>,
     /// What is needed to render it again, if the file says so.

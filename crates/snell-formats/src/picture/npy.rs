@@ -57,5 +57,5 @@ pub(super) fn read<P, F: Fn(Rgb) -> P>(
     let color = |p: &[u8; 24]| Rgb::new(value(&p[..8]), value(&p[8..16]), value(&p[16..]));
     let pixel = convert(None);
     let pixels = data[..count].as_chunks::<24>().0.iter().map(|p| pixel(color(p))).collect();
-    Ok(Picture { width: width as usize, height: height as usize, pixels, max: None, recipe: None })
+    Ok(Picture { width: width as usize, height: height as usize, pixels, alpha: None, max: None, recipe: None })
 }

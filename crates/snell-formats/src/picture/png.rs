@@ -73,7 +73,7 @@ pub(super) fn read<P, F: Fn(Rgb) -> P>(
         let bytes = &pixel[channel * bytes_each..(channel + 1) * bytes_each];
         bytes.iter().fold(0.0, |value, &byte| value * 256.0 + f64::from(byte))
     };
-    // Gray, gray and alpha, colour, colour and alpha. Alpha is left out.
+    // Gray, gray and alpha, colour, colour and alpha.
     let color = |p: &[u8]| {
         if channels < 3 { Rgb::gray(sample(p, 0)) } else { Rgb::new(sample(p, 0), sample(p, 1), sample(p, 2)) }
     };
@@ -81,5 +81,12 @@ pub(super) fn read<P, F: Fn(Rgb) -> P>(
     let pixel = convert(max);
     let mut pixels = fallible(count)?;
     pixels.extend(data.chunks_exact(channels * bytes_each).map(|p| pixel(color(p))));
-    Ok(Picture { width: width as usize, height: height as usize, pixels, max, recipe })
+    let mut alpha = None;
+    if matches!(frame.color_type, ColorType::GrayscaleAlpha | ColorType::Rgba) {
+        let whole = if sixteen_bit { 65535.0 } else { 255.0 };
+        let mut read = fallible(count)?;
+        read.extend(data.chunks_exact(channels * bytes_each).map(|p| (sample(p, channels - 1) / whole) as f32));
+        alpha = Some(read);
+    }
+    Ok(Picture { width: width as usize, height: height as usize, pixels, alpha, max, recipe })
 }

@@ -61,7 +61,14 @@ pub(super) fn read<P, F: Fn(Rgb) -> P>(
     for i in 0..count {
         pixels.push(pixel(Rgb::new(sample(3 * i)?, sample(3 * i + 1)?, sample(3 * i + 2)?)));
     }
-    Ok(Picture { width: width as usize, height: height as usize, pixels, max: Some(max as u32), recipe: None })
+    Ok(Picture {
+        width: width as usize,
+        height: height as usize,
+        pixels,
+        alpha: None,
+        max: Some(max as u32),
+        recipe: None,
+    })
 }
 
 struct Header<'a> {

@@ -17,7 +17,7 @@ pub(super) const LEVELS: i32 = 10;
 /// | `lecture` | ko | ko·kr + (1 − ko)·kr |
 /// | `course2018` | 1 | kr |
 /// | `course2020` | 1 | kr + (1 − kr) |
-/// | `whitted` | ko | ko·kr + (1 − ko) |
+/// | `whitted` | ko | ko·kr + (1 − ko); where a texture has holes, from there to 1 |
 ///
 /// so that a branch adds at most `L·(1 + g + g² + …)`. Splitting into bands multiplies by the sum of their shares without signs.
 pub(super) fn per_throughput(world: &World) -> Rgb {
@@ -28,12 +28,17 @@ pub(super) fn per_throughput(world: &World) -> Rgb {
     let mut gain = Rgb::gray(0.0);
     let model = world.render.integrator;
     let brightest = world.patterns.iter().fold(Rgb::gray(1.0), |most, pattern| largest(most, pattern.largest()));
-    for m in &world.materials {
+    for (number, m) in (0..).zip(&world.materials) {
         let local = size(world.ambient) * size(m.ka) * brightest + lights * (size(m.kd) * brightest + size(m.ks));
         let weighs =
             if matches!(model, Integrator::Lecture | Integrator::Whitted) { size(m.ko) } else { Rgb::gray(1.0) };
         radiance = largest(radiance, weighs * local + size(m.emission));
         gain = largest(gain, children(model, m, brightest));
+        if world.has_holes(number) {
+            // `ko` may be anything down to 0.
+            let there_is_none = Material { ko: Rgb::gray(0.0), ..m.clone() };
+            gain = largest(gain, children(model, &there_is_none, brightest));
+        }
     }
     let split: Rgb = world.bands.iter().fold(Rgb::gray(0.0), |all, band| sum(all, size(band.weight)));
     let split = if world.spectra.is_empty() { Rgb::gray(1.0) } else { largest(split, Rgb::gray(1.0)) };

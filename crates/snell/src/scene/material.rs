@@ -40,7 +40,7 @@ pub struct Material {
     /// `whitted`: Sellmeier's pairs B, C instead of `eta`: the index squared at λ µm is 1 + Σ Bλ²/(λ² − C), C in µm².
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sellmeier: Option<Vec<[f64; 2]>>,
-    /// Name of a texture, by which `ka` and `kd` are multiplied.
+    /// Name of a texture, by which `ka` and `kd` are multiplied, and with `whitted` `ko` and `emission` by its alpha.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub texture: Option<String>,
     /// `whitted`: each face is a whole pane of this thickness in scene units, with both of its sides, so that the

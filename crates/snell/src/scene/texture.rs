@@ -16,7 +16,7 @@ pub struct Texture {
     /// Two colours of squares. Give this or `image`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub checker: Option<[Rgb; 2]>,
-    /// A picture, PNG, PPM or EXR, relative to the scene file.
+    /// A picture, PNG, PPM or EXR, relative to the scene file. `whitted`: where its alpha is 0, the surface is not there.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub image: Option<String>,
     /// How many squares or pictures lie beside and above each other.

@@ -1,6 +1,7 @@
 //! A picture as a texture, looked up between its texels.
 
 use crate::film::Rgb;
+use std::ops::{Add, Mul};
 
 /// A picture in linear light, kept as `f32`: 8192 x 4096 texels take 400 megabytes. All arithmetic is in `f64`.
 #[derive(Clone, PartialEq)]
@@ -8,6 +9,8 @@ pub struct Image {
     width: usize,
     height: usize,
     pixels: Vec<[f32; 3]>,
+    /// The share of each texel that is there, from 0 to 1; `None` where all of it is.
+    alpha: Option<Vec<f32>>,
 }
 
 /// What keeps numbers from being an image.
@@ -48,8 +51,33 @@ impl Image {
         }
         match pixels.iter().position(|pixel| !pixel.iter().all(|c| c.is_finite())) {
             Some(at) => Err(ImageError::NotFinite { column: at % width, row: at / width }),
-            None => Ok(Self { width, height, pixels }),
+            None => Ok(Self { width, height, pixels, alpha: None }),
         }
+    }
+
+    /// The same with an alpha for each texel: the share of it that is there. Colours are not multiplied by it. What lies
+    /// beyond 0 and 1, as filters that ring leave it, counts as 0 and 1. Alpha that is 1 everywhere is not kept.
+    ///
+    /// # Errors
+    /// As [`Image::new`], and a number of alphas that does not fit the size, or one that is not finite.
+    pub fn with_alpha(
+        width: usize,
+        height: usize,
+        pixels: Vec<[f32; 3]>,
+        mut alpha: Vec<f32>,
+    ) -> Result<Self, ImageError> {
+        let image = Self::new(width, height, pixels)?;
+        if alpha.len() != image.pixels.len() {
+            return Err(ImageError::Size { width, height, count: alpha.len() });
+        }
+        if let Some(at) = alpha.iter().position(|a| !a.is_finite()) {
+            return Err(ImageError::NotFinite { column: at % width, row: at / width });
+        }
+        for a in &mut alpha {
+            *a = a.clamp(0.0, 1.0);
+        }
+        let is_whole = alpha.iter().all(|&a| a == 1.0);
+        Ok(Self { alpha: (!is_whole).then_some(alpha), ..image })
     }
 
     /// Columns, at least 1.
@@ -67,31 +95,77 @@ impl Image {
         &self.pixels
     }
 
-    /// The colour at `(u, v)`, bilinear between the four nearest texel centres; the image repeats in both directions. The
-    /// centre of the texel in column i and row j is at `((i + ½)/width, 1 − (j + ½)/height)`, and there its colour comes back
-    /// to the bit. A coordinate that is not finite counts as 0.
-    pub fn bilinear(&self, u: f64, v: f64) -> Rgb {
-        self.between(u, place(part(v), self.height), |row| wrapped(row, self.height))
+    /// The share of each texel that is there, from 0 to 1, in the same order; `None` where all of it is.
+    pub fn alpha(&self) -> Option<&[f32]> {
+        self.alpha.as_deref()
     }
 
-    /// The same for an image of a sphere in latitude and longitude, which repeats only in `u`: between the centres of
-    /// the outermost rows and the poles, and beyond `v` = 0 and 1, the outermost rows go on.
+    /// The colour at `(u, v)`, bilinear between the four nearest texel centres; the image repeats in both directions. The
+    /// centre of the texel in column i and row j is at `((i + ½)/width, 1 − (j + ½)/height)`, and there its colour comes back
+    /// to the bit. A coordinate that is not finite counts as 0. Alpha is not looked at.
+    pub fn bilinear(&self, u: f64, v: f64) -> Rgb {
+        self.around(u, v).mix(|at| self.color(at))
+    }
+
+    /// The colour of what is there at `(u, v)`, and the share that is, from 0 to 1; places as in [`Image::bilinear`].
+    ///
+    /// Each texel's colour counts by its alpha, and the sum is divided by the alpha that is found (Porter and Duff,
+    /// *Compositing Digital Images*, Computer Graphics 18(3), 1984): colours that are hidden where alpha is 0 do not bleed in.
+    /// Among texels of alpha 1 these are the bits of [`Image::bilinear`]; where nothing is, the colour is black.
+    pub fn bilinear_with_alpha(&self, u: f64, v: f64) -> (Rgb, f64) {
+        let around = self.around(u, v);
+        if self.alpha.is_none() {
+            return (around.mix(|at| self.color(at)), 1.0);
+        }
+        let alpha = around.mix(|at| self.alpha_of(at));
+        let color = around.mix(|at| self.color(at) * self.alpha_of(at));
+        (if alpha > 0.0 { color.to_array().map(|c| c / alpha).into() } else { Rgb::black() }, alpha)
+    }
+
+    /// The colour of an image of a sphere in latitude and longitude, in front of black, where not all of it is there. It repeats
+    /// only in `u`: between the centres of the outermost rows and the poles, and beyond `v` = 0 and 1, the outermost rows go on.
     pub fn bilinear_latlong(&self, u: f64, v: f64) -> Rgb {
         // NaN becomes 0 too.
         let v = if v >= 0.0 { v.min(1.0) } else { 0.0 };
-        self.between(u, place(v, self.height), |row| row.clamp(0, self.height as i64 - 1) as usize)
+        let last = self.height as i64 - 1;
+        let around = self.between(u, place(v, self.height), |row| row.clamp(0, last) as usize);
+        around.mix(|at| self.color(at) * self.alpha_of(at))
+    }
+
+    fn color(&self, at: usize) -> Rgb {
+        self.pixels[at].map(f64::from).into()
+    }
+
+    fn alpha_of(&self, at: usize) -> f64 {
+        self.alpha.as_ref().map_or(1.0, |alpha| f64::from(alpha[at]))
+    }
+
+    /// In an image that repeats.
+    fn around(&self, u: f64, v: f64) -> Around {
+        self.between(u, place(part(v), self.height), |row| wrapped(row, self.height))
     }
 
     /// Between a row, counted from the bottom, and the one above it. `inside` is the row to take for one outside.
-    fn between(&self, u: f64, (row, above): (i64, f64), inside: impl Fn(i64) -> usize) -> Rgb {
+    fn between(&self, u: f64, (row, above): (i64, f64), inside: impl Fn(i64) -> usize) -> Around {
         let (column, right) = place(part(u), self.width);
         let columns = [column, column + 1].map(|column| wrapped(column, self.width));
-        let along = |row: i64| {
-            let start = (self.height - 1 - inside(row)) * self.width;
-            let [left, next] = columns.map(|column| Rgb::from(self.pixels[start + column].map(f64::from)));
-            left * (1.0 - right) + next * right
-        };
-        along(row) * (1.0 - above) + along(row + 1) * above
+        let texels = [row, row + 1].map(|row| columns.map(|c| (self.height - 1 - inside(row)) * self.width + c));
+        Around { texels, right, above }
+    }
+}
+
+/// The four texels around a place, row by row from below, and how far between them it lies.
+struct Around {
+    texels: [[usize; 2]; 2],
+    right: f64,
+    above: f64,
+}
+
+impl Around {
+    /// Of what the texels have the mean, by how near they are.
+    fn mix<T: Mul<f64, Output = T> + Add<Output = T>>(&self, of: impl Fn(usize) -> T) -> T {
+        let [low, high] = self.texels.map(|[left, next]| of(left) * (1.0 - self.right) + of(next) * self.right);
+        low * (1.0 - self.above) + high * self.above
     }
 }
 
@@ -151,6 +225,33 @@ mod tests {
         assert_eq!(image.bilinear_latlong(0.25, -3.0), Rgb::new(0.0, 0.0, 1.0), "the bottom row down to the pole");
     }
 
+    /// What filters of premultiplied colours say, and not of the hidden green.
+    #[test]
+    fn hidden_colours_do_not_bleed_in() {
+        let (red, hidden) = ([1.0, 0.0, 0.0], [0.0, 9.0, 0.0]);
+        let image = Image::with_alpha(2, 2, vec![red, hidden, hidden, red], vec![1.0, 0.0, 0.0, 0.5]).unwrap();
+        let red = Rgb::from(red.map(f64::from));
+        assert_eq!(image.bilinear_with_alpha(0.25, 0.75), (red, 1.0));
+        assert_eq!(image.bilinear_with_alpha(0.75, 0.75), (Rgb::black(), 0.0), "nothing, and no NaN");
+        assert_eq!(image.bilinear_with_alpha(0.5, 0.75), (red, 0.5));
+        assert_eq!(image.bilinear_with_alpha(0.5, 0.5), (red, 0.375));
+        assert_eq!(image.bilinear(0.5, 0.75), Rgb::new(0.5, 4.5, 0.0), "without a look at alpha");
+        assert_eq!(image.bilinear_latlong(0.5, 0.75), red * 0.5, "a sky in front of black");
+        // Covered by a half, a colour of its own each: twice as much of the one that is whole.
+        let half = Image::with_alpha(2, 1, vec![[1.0; 3], [0.25; 3]], vec![1.0, 0.5]).unwrap();
+        assert_eq!(half.bilinear_with_alpha(0.5, 0.5), (Rgb::gray(0.75), 0.75));
+    }
+
+    #[test]
+    fn alpha_is_kept_only_where_something_is_missing() {
+        let with = |alpha: [f32; 2]| Image::with_alpha(2, 1, vec![[0.3; 3]; 2], alpha.to_vec());
+        assert_eq!(with([1.0, 1.0]), Image::new(2, 1, vec![[0.3; 3]; 2]));
+        assert_eq!(with([1.25, -0.125]).unwrap().alpha(), Some(&[1.0, 0.0][..]), "a filter that rings");
+        assert_eq!(with([1.0, f32::NAN]), Err(ImageError::NotFinite { column: 1, row: 0 }));
+        let short = Image::with_alpha(2, 1, vec![[0.3; 3]; 2], vec![1.0]);
+        assert_eq!(short, Err(ImageError::Size { width: 2, height: 1, count: 1 }));
+    }
+
     #[test]
     fn any_number_is_somewhere() {
         let image = image(5, 3);
@@ -202,6 +303,30 @@ mod tests {
             let image = Image::new(width, height, vec![c; width * height]).unwrap();
             prop_assert_eq!(image.bilinear(u, v).to_array(), c.map(f64::from));
             prop_assert_eq!(image.bilinear_latlong(u, v).to_array(), c.map(f64::from));
+        }
+
+        /// Among texels of alpha 1 the bits are those of an image without alpha; everywhere a colour is between its texels'.
+        #[test]
+        fn alpha_1_changes_no_bit(
+            size in prop::array::uniform2(2usize..9),
+            holes in prop::collection::vec(prop_oneof![Just(1.0f32), 0.0..1.0f32, Just(0.0)], 64),
+            at in prop::array::uniform2(-2.0..2.0f64),
+        ) {
+            let ([width, height], [u, v]) = (size, at);
+            let plain = image(width, height);
+            let alpha: Vec<f32> = holes.iter().copied().cycle().take(width * height).collect();
+            let image = Image::with_alpha(width, height, plain.pixels().to_vec(), alpha.clone()).unwrap();
+            let (color, covered) = image.bilinear_with_alpha(u, v);
+            prop_assert!((0.0..=1.0).contains(&covered));
+            let around = image.around(u, v).texels;
+            if around.as_flattened().iter().all(|&at| alpha[at] == 1.0) {
+                prop_assert_eq!((color, covered), (plain.bilinear(u, v), 1.0));
+            }
+            let seen = around.as_flattened().iter().filter(|&&at| alpha[at] > 0.0).map(|&at| plain.color(at).g);
+            let (low, high) = seen.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), g| (low.min(g), high.max(g)));
+            // Roundings of five products and sums, and of the quotient.
+            let room = 1e-15 * low.abs().max(high.abs());
+            prop_assert!(covered == 0.0 || (low - room..=high + room).contains(&color.g), "{} {} {}", low, color.g, high);
         }
 
         /// The plain formula with the four texels around, without any snapping.

@@ -42,6 +42,8 @@ pub(crate) struct Hits {
     geometric: Columns<3>,
     /// By what the colours of the surfaces are multiplied, if there are patterns; else empty.
     tints: Columns<3>,
+    /// How much of the surfaces is there, if there are patterns with holes; else empty.
+    coverage: Columns<1>,
     /// Spheres that the rays may meet.
     seen: Few,
 }
@@ -122,6 +124,7 @@ impl Hits {
         self.surface.clear();
         self.geometric.clear();
         self.tints.clear();
+        self.coverage.clear();
         for start in (0..self.len()).step_by(L::WIDTH) {
             let (mut primitives, mut materials) = ([0; MAX_WIDTH], [0.0; MAX_WIDTH]);
             for lane in 0..L::WIDTH.min(self.len() - start) {
@@ -174,15 +177,20 @@ impl Hits {
                 self.geometric.push(active, geometric.unit().into());
             }
             if !world.patterns.is_empty() {
-                let there = there.bits();
+                let (there, mut colors, mut coverage) = (there.bits(), [Rgb::gray(1.0); MAX_WIDTH], [1.0; MAX_WIDTH]);
+                for lane in 0..L::WIDTH {
+                    if there >> lane & 1 != 0 {
+                        (colors[lane], coverage[lane]) = world.pattern_at(primitives[lane], point.lane(lane));
+                    }
+                }
                 let tint = Rgb::<L>::from_fn(
                     #[inline(always)]
-                    |lane| {
-                        let seen = there >> lane & 1 != 0;
-                        if seen { world.tint(primitives[lane], point.lane(lane)) } else { Rgb::gray(1.0) }
-                    },
+                    |lane| colors[lane],
                 );
                 self.tints.push(active, tint.into());
+                if world.has_alpha {
+                    self.coverage.push(active, [L::load(&coverage)]);
+                }
             }
         }
     }
@@ -402,6 +410,28 @@ impl<L: Lanes> Batch<'_, L> {
         }
         let [r, g, b] = self.hits.tints.group(0, self.start);
         color * Rgb::new(r, g, b)
+    }
+
+    /// How much of the surface is there.
+    #[inline(always)]
+    pub fn coverage(&self) -> L {
+        if self.hits.coverage.len() == 0 { L::splat(1.0) } else { self.hits.coverage.lanes(0, self.start) }
+    }
+
+    /// What dyes the light that goes through: `kd`, and the pattern as far as that is there.
+    #[inline(always)]
+    pub fn dye(&self) -> Rgb<L> {
+        let coverage = self.coverage();
+        let bare = L::splat(1.0) - coverage;
+        let kd = self.material_color(
+            #[inline(always)]
+            |m| m.kd,
+        );
+        let patterned = self.patterned(
+            #[inline(always)]
+            |m| m.kd,
+        );
+        kd * Rgb::new(bare, bare, bare) + patterned * Rgb::new(coverage, coverage, coverage)
     }
 
     /// The number of the material of one hit.

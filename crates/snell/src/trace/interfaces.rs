@@ -176,19 +176,6 @@ fn ones(mut bits: u64) -> impl Iterator<Item = usize> {
     })
 }
 
-/// Does a ray that goes on behind a thin face only meet the same pane again? Between two faces of one plane is nothing but rounding;
-/// at an edge the ray starts beside its face, and may meet the next one, though it has been through.
-fn leaves_pane(world: &World, packet: &Packet, ray: usize) -> bool {
-    let (t, source, primitive) = (packet.t[ray], packet.source[ray], packet.primitive[ray]);
-    if source < 0.0 || !world.is_thin(index(primitive)) || !world.is_thin(index(source)) {
-        return false;
-    }
-    // A pane shifts aside by its thickness at most; beyond an edge that is on its next face.
-    let within = world.object_of(index(primitive) as u32) == world.object_of(index(source) as u32);
-    let thickness = world.materials[world.material_of(index(source)) as usize].thickness.unwrap_or(0.0);
-    t <= world.clearance + if within { thickness } else { 0.0 }
-}
-
 impl Ways {
     /// What has been let through, in lanes.
     #[inline(always)]
@@ -244,6 +231,30 @@ impl Ways {
         Leaving { origin, dir, source: packet.source[ray], clear: self.clear[ray], wo }
     }
 
+    /// Does a ray that goes on behind a thin face only meet the same pane again? Between two faces of one plane is nothing but rounding;
+    /// at an edge the ray starts beside its face, and may meet the next one, though it has been through.
+    fn leaves_pane(&self, world: &World, packet: &Packet, ray: usize, (t, primitive): (f64, u32)) -> bool {
+        let source = packet.source[ray];
+        if source < 0.0 || !world.is_thin(primitive as usize) || !world.is_thin(index(source)) {
+            return false;
+        }
+        if world.is_cut_out(index(source)) {
+            // It starts in front of its face.
+            let (origin, dir) = packet.ways::<f64>(ray);
+            return t <= self.clear[ray] && !world.is_opaque_at(primitive as usize, origin + dir * t);
+        }
+        // A pane shifts aside by its thickness at most; beyond an edge that is on its next face.
+        let within = world.object_of(primitive) == world.object_of(index(source) as u32);
+        let thickness = world.materials[world.material_of(index(source)) as usize].thickness.unwrap_or(0.0);
+        t <= world.clearance + if within { thickness } else { 0.0 }
+    }
+
+    /// Does a ray go on through a face as if that were not there: through a hole, or one that it has been through?
+    fn goes_on(&self, world: &World, packet: &Packet, ray: usize, (t, primitive): (f64, u32)) -> bool {
+        let (origin, dir) = packet.ways::<f64>(ray);
+        self.leaves_pane(world, packet, ray, (t, primitive)) || world.is_hole(primitive as usize, origin + dir * t)
+    }
+
     /// Does a ray really meet a face, where it could only be a part of the place that it leaves?
     fn meets(&self, world: &World, packet: &Packet, ray: usize, primitive: u32, t: f64) -> bool {
         if t > self.clear[ray] { t > 0.0 } else { self.leaving(packet, ray).meets(world, primitive, t) }
@@ -276,13 +287,21 @@ impl Ways {
         let world = media.world();
         let (t, primitive, before) =
             (packet.t[ray], index(packet.primitive[ray]) as u32, index(self.before[ray]) as u32);
+        let (origin, dir) = packet.ways::<f64>(ray);
         let solid = world.solid_of(primitive as usize);
         if solid == NO_SOLID {
             (self.after[ray], self.outer[ray]) = (self.before[ray], 1.0);
-            let met = self.meets(world, packet, ray, primitive, t) && !leaves_pane(world, packet, ray);
-            return if met { Met::Face } else { Met::Nothing(t) };
+            if !self.meets(world, packet, ray, primitive, t) {
+                return Met::Nothing(t);
+            }
+            if !self.goes_on(world, packet, ray, (t, primitive)) {
+                return Met::Face;
+            }
+            let next = if world.has_alpha { self.next_in_place(world, packet, ray) } else { None };
+            let Some(next) = next else { return Met::Nothing(t) };
+            packet.primitive[ray] = f64::from(next);
+            return self.meet(media, packet, ray, pixel, statistics);
         }
-        let (origin, dir) = packet.ways::<f64>(ray);
         let enters = world.enters(primitive as usize, solid, origin, dir, t);
         if enters
             && t > self.clear[ray]
@@ -295,7 +314,7 @@ impl Ways {
         let mut place = Place { after: before, up_to: t, face: (t, primitive), enters };
         if world.solids[solid as usize].touches {
             if let Some(opaque) = self.look_around(media, packet, ray, &mut place) {
-                // What is opaque is seen, and nothing else in its place.
+                // What is opaque is seen, and nothing else in its place, but through its holes.
                 (packet.t[ray], packet.primitive[ray]) = (opaque.0, f64::from(opaque.1));
                 (self.after[ray], self.outer[ray]) = (self.before[ray], 1.0);
                 return Met::Face;
@@ -330,7 +349,8 @@ impl Ways {
             return Met::Nothing(up_to);
         }
         let band = index(self.band[ray]) as u32;
-        if media.same_index(before, after, band) && !(enters && world.shows(face.1 as usize)) {
+        let shows = |(t, face): (f64, u32)| enters && world.shows(face as usize, origin + dir * t);
+        if media.same_index(before, after, band) && !shows(face) {
             self.absorb(media, ray, face.0);
             (self.before[ray], self.since[ray], self.changed[ray]) = (f64::from(after), face.0, up_to);
             return Met::Nothing(up_to);
@@ -342,7 +362,7 @@ impl Ways {
 
     /// Crosses all faces in one place, in the order of their ids, so that a rounding does not decide which was entered last. The
     /// face that counts is the one into the medium behind the place, or else the one out of the medium before it. Returns an
-    /// opaque surface there, if there is one.
+    /// opaque surface there, if there is one, perhaps one that is only partly there.
     fn look_around(
         &mut self,
         media: &mut Media<'_>,
@@ -363,8 +383,10 @@ impl Ways {
         }
         self.crossings.sort_by_key(|&(_, primitive)| primitive);
         let opaque = |&&(t, primitive): &&(f64, u32)| {
-            let is_opaque = world.solid_of(primitive as usize) == NO_SOLID && !world.is_thin(primitive as usize);
-            is_opaque && f64::from(primitive) != source && leaving.meets(world, primitive, t)
+            let is_paint = world.is_cut_out(primitive as usize) && !self.goes_on(world, packet, ray, (t, primitive));
+            (is_paint || world.is_opaque_at(primitive as usize, origin + dir * t))
+                && f64::from(primitive) != source
+                && leaving.meets(world, primitive, t)
         };
         if let Some(&found) = self.crossings.iter().find(opaque) {
             return Some(found);
@@ -400,6 +422,22 @@ impl Ways {
             place.enters = world.enters(primitive as usize, world.solid_of(primitive as usize), origin, dir, t);
         }
         None
+    }
+
+    /// What a ray meets at exactly the distance of something that it goes on through: the tree has told only the first that is there.
+    fn next_in_place(&mut self, world: &World, packet: &Packet, ray: usize) -> Option<u32> {
+        let ((origin, dir), t, first) = (packet.ways::<f64>(ray), packet.t[ray], index(packet.primitive[ray]) as u32);
+        let mut crossings = std::mem::take(&mut self.crossings);
+        crossings.clear();
+        world.tree.crossings(origin, dir, [t, t], &mut crossings);
+        let is_met = |&&(_, primitive): &&(f64, u32)| {
+            primitive > first
+                && self.meets(world, packet, ray, primitive, t)
+                && !self.goes_on(world, packet, ray, (t, primitive))
+        };
+        let next = crossings.iter().find(is_met).map(|&(_, primitive)| primitive);
+        self.crossings = crossings;
+        next
     }
 
     /// The farthest face of a solid in the place of the hit, if there are ways in among them.

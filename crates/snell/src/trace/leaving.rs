@@ -38,6 +38,16 @@ pub(super) fn back<L: Lanes>(world: &World, t: L) -> L {
     L::splat(far).min(t * L::splat(0.5))
 }
 
+/// How far back on its way of length `t` a ray starts that goes on through a face that is only partly there, and how far it then goes
+/// until it is clear of that face's plane. What else is in the place of the face, like a wall behind a picture, is then in front of
+/// it, and nothing else is: the ray that was met here has come that way.
+#[inline(always)]
+pub(super) fn through<L: Lanes>(world: &World, cos: L, t: L) -> [L; 2] {
+    let off = until_clear(world, cos).min(L::splat(SLANTED * world.clearance));
+    let back = (L::splat(4.0) * off).min(t * L::splat(0.5));
+    [back, back + off]
+}
+
 /// A face met at a cosine of 1/2048 or less may be met farther from where it is than other faces of its place are looked for.
 const SLANTED: f64 = 2048.0;
 

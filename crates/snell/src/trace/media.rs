@@ -192,8 +192,12 @@ impl<'a> Media<'a> {
                 let solid = world.solid_of(primitive as usize);
                 let meets = way.meets(world, primitive, t);
                 if solid == NO_SOLID {
+                    let point = way.origin + way.dir * t;
+                    if world.is_hole(primitive as usize, point) {
+                        continue;
+                    }
                     // On the edge between two triangles a pane is met twice, and is one all the same.
-                    let is_pane = world.is_thin(primitive as usize);
+                    let is_pane = world.is_thin(primitive as usize) && !world.is_opaque_at(primitive as usize, point);
                     let again = is_pane && std::mem::replace(&mut pane, true);
                     if meets && t < distance && !again {
                         light = light * self.through_surface(set, primitive as usize, way, t);
@@ -232,11 +236,11 @@ impl<'a> Media<'a> {
         light * transmittance_rgb::<f64>(self.medium(set).sigma_a, distance - since)
     }
 
-    /// What a surface that no solid has lets through: a thin face something, others nothing.
+    /// What a surface that no solid has lets through: a pane something, others what is not there of them.
     fn through_surface(&self, set: u32, primitive: usize, way: &Leaving, t: f64) -> Rgb {
         let (world, point) = (self.world, way.origin + way.dir * t);
         let material = &world.materials[world.material_of(primitive) as usize];
-        let Some(thickness) = material.thickness.filter(|_| world.is_thin(primitive)) else { return Rgb::gray(0.0) };
+        let Some(thickness) = material.thickness else { return world.lets_through(primitive, point) };
         let eta = material.eta / self.medium(set).eta;
         let pane = Pane::<f64> { thickness, eta, sigma_a: material.absorption() };
         let cos_theta_i = world.geometric_normal(primitive, point).dot(way.dir).abs();

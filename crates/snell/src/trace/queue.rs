@@ -98,7 +98,8 @@ pub(crate) struct Load<L: Lanes> {
     /// Which of the bands of light; [`WHITE`](super::media::WHITE) for all of it.
     pub band: L,
     /// With real optics, from the place that a mirrored ray leaves to where it is asked what it meets: [`back`](super::leaving::back)
-    /// towards where its light came from. Zero for others.
+    /// towards where its light came from. The same for one that goes on through what is only partly there
+    /// ([`through`](super::leaving::through)). Zero for others.
     pub back: Vec3<L>,
 }
 

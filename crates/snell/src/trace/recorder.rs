@@ -139,6 +139,7 @@ fn between(world: &World, hit: &Batch<'_, f64>, wi: Vec3, distance: f64) -> Vec<
         return Vec::new();
     }
     let real_optics = world.render.integrator == Integrator::Whitted;
+    let tinted = world.render.shadows() == Shadows::Tinted;
     let (mut origin, source, mut clear) = (hit.point(), hit.primitive(), T_MIN);
     if real_optics {
         origin = origin + hit.wo() * back(world, hit.t());
@@ -149,14 +150,15 @@ fn between(world: &World, hit: &Batch<'_, f64>, wi: Vec3, distance: f64) -> Vec<
     world.tree.crossings(origin, wi, [-world.behind, distance], &mut crossings);
     crossings.retain(|&(t, primitive)| {
         if real_optics {
-            return t < distance && leaving.meets(world, primitive, t);
+            let is_hole = tinted && world.is_hole(primitive as usize, origin + wi * t);
+            return t < distance && leaving.meets(world, primitive, t) && !is_hole;
         }
         // The lecture's spheres are met from outside only.
         let sphere = world.spheres.get(primitive as usize);
         let enters = sphere.is_none_or(|sphere| t < (sphere.center - origin).dot(wi));
         t > T_MIN && t < distance && f64::from(primitive) != source && enters
     });
-    let blocks = |&(_, primitive): &(f64, u32)| world.blocks_light(primitive);
+    let blocks = |&(t, primitive): &(f64, u32)| world.blocks_light_at(primitive, origin + wi * t);
     let end = crossings.iter().position(blocks).map_or(crossings.len(), |at| at + 1);
     crossings.truncate(end);
     crossings.into_iter().map(|(t, primitive)| (primitive, t)).collect()

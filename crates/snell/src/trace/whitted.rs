@@ -3,18 +3,21 @@
 //!
 //! | | on the outer side | from inside |
 //! | --- | --- | --- |
-//! | the hit adds | `ko × local + emission` | nothing |
+//! | the hit adds | `ko × local + a × emission` | nothing |
 //! | mirror ray | `ko·kr + (1 − ko)·R` | `R` |
 //! | refracted ray | `(1 − ko)·(1 − R)`, times `kd` if it is dyed | `1 − R` |
 //!
 //! all times the throughput. `R` is Fresnel's reflectance of the interface; total internal reflection is `R = 1`. Radiance is
 //! carried as `L/n²`, which an interface does not change. A surface that lets nothing through has `ko` 1.
 //!
+//! `a` is the alpha of the texture, 1 without one: the share of the surface that is there (its coverage, Porter and Duff 1984).
+//! `ko` stands for `ko·a`. What is left goes on as the material lets light through; if it lets none through, straight on.
+//!
 //! At its first dispersive interface a white ray splits: a refracted ray for each band of light, with the band's index and its
 //! share of white. What is reflected goes one way for all, with `R` = Σ share·R of the bands, and stays white.
 
 use super::hits::Batch;
-use super::leaving::{back, until_clear};
+use super::leaving::{back, through, until_clear};
 use super::media::{Media, WHITE};
 use super::pane::{Pane, Passage};
 use super::queue::{Load, RayKind, RayQueue, Rays, Weight};
@@ -43,7 +46,17 @@ fn opacity<L: Lanes>(hits: &Batch<'_, L>) -> Rgb<L> {
         #[inline(always)]
         |m| m.ko,
     );
-    Rgb::select(face.before.eq(face.after) & !is_pane(hits), Rgb::gray(1.0).splat(), ko)
+    let coverage = hits.coverage();
+    let whole = Rgb::select(face.before.eq(face.after) & !is_pane(hits), Rgb::gray(1.0).splat(), ko);
+    whole * Rgb::new(coverage, coverage, coverage)
+}
+
+/// Which hits are on opaque surfaces that are only partly there?
+#[inline(always)]
+fn is_cut_out<L: Lanes>(hits: &Batch<'_, L>) -> L::Mask {
+    let face = hits.face();
+    let partly = hits.active & hits.coverage().lt(L::splat(1.0)) & face.before.eq(face.after);
+    if partly.any() { partly & !is_pane(hits) } else { partly }
 }
 
 /// Which hits are on thin faces, whole panes?
@@ -55,7 +68,7 @@ fn is_pane<L: Lanes>(hits: &Batch<'_, L>) -> L::Mask {
     }
     let thickness = hits.material(
         #[inline(always)]
-        |m| if m.is_transparent() { m.thickness.unwrap_or(-1.0) } else { -1.0 },
+        |m| m.thickness.unwrap_or(-1.0),
     );
     hits.active & face.before.eq(face.after) & !thickness.lt(L::splat(0.0))
 }
@@ -118,18 +131,17 @@ pub(crate) fn answer<L: Lanes>(
         #[inline(always)]
         |m| m.emission,
     );
-    let own = ko * hits.local_color() + Rgb::select(outer, emission, none);
+    let (coverage, cut_out) = (hits.coverage(), is_cut_out(hits));
+    let emission = Rgb::select(outer, emission * Rgb::new(coverage, coverage, coverage), none);
+    let own = ko * hits.local_color() + emission;
     let contribution = throughput * Rgb::select(hits.is_sky(), background(hits), own);
 
     let dyed = hits.material(
         #[inline(always)]
         |m| if m.dyed { 1.0 } else { 0.0 },
     );
-    let dye = hits.patterned(
-        #[inline(always)]
-        |m| m.kd,
-    );
-    let (clear, dye) = (white - ko, Rgb::select(outer & dyed.gt(zero), dye, white));
+    let dyes = outer & dyed.gt(zero) & !cut_out;
+    let (clear, dye) = (white - ko, if dyes.any() { Rgb::select(dyes, hits.dye(), white) } else { white });
 
     let to = Directions::new(hits, relative_index(hits, media, None));
     let mut reflectance = Rgb::new(to.reflectance, to.reflectance, to.reflectance);
@@ -158,10 +170,21 @@ pub(crate) fn answer<L: Lanes>(
         (origin, onward) = (Vec3::select(panes, behind, origin), Vec3::select(panes, -hits.wo(), onward));
         goes_on = goes_on | panes;
     }
+    if cut_out.any() {
+        reflectance = Rgb::select(cut_out, none, reflectance);
+        transmittance = Rgb::select(cut_out, white, transmittance);
+        onward = Vec3::select(cut_out, -hits.wo(), onward);
+        goes_on = goes_on | cut_out;
+    }
     let mut mirror = child(hits, to.mirror, face.before, band, throughput * (ko * kr + clear * reflectance));
     mirror.1.load.back = hits.wo() * back(hits.world, hits.t());
     let refracted_weight = throughput * (clear * dye) * transmittance;
-    let (sends, refracted) = child(hits, onward, face.after, band, refracted_weight);
+    let (sends, mut refracted) = child(hits, onward, face.after, band, refracted_weight);
+    if cut_out.any() {
+        let [back, clear] = through(hits.world, hits.geometric_normal().dot(onward), hits.t());
+        refracted.load.back = Vec3::select(cut_out, hits.wo() * back, refracted.load.back);
+        refracted.load.t_min = L::select(cut_out, clear, refracted.load.t_min);
+    }
     (contribution, mirror, (sends & goes_on & !splits, Rays { origin, ..refracted }))
 }
 

@@ -74,6 +74,8 @@ pub struct World {
     /// Patterns on surfaces, and for each material its pattern.
     pub(crate) patterns: Vec<Pattern>,
     pattern_of: Vec<Option<u32>>,
+    /// Has a pattern places where the surface is not there?
+    pub(crate) has_alpha: bool,
     /// Light from where nothing is.
     pub(crate) background: Background,
     /// No ray is longer before it hits something: the diagonal of the box around everything, the starts of camera rays included.
@@ -125,6 +127,7 @@ impl World {
             spectrum_of: Vec::new(),
             patterns: Vec::new(),
             pattern_of: Vec::new(),
+            has_alpha: false,
             background: Background::new(scene.background, scene.sky.as_ref()).ok_or_else(|| unread("sky"))?,
             reach: 0.0,
             clearance: 0.0,
@@ -146,6 +149,7 @@ impl World {
         let material_ids: MaterialIds<'_> =
             scene.materials.keys().enumerate().map(|(i, name)| (name.as_str(), i as u32)).collect();
         world.find_patterns(scene)?;
+        world.leave_out_thickness();
         for (i, sphere) in scene.spheres.iter().enumerate() {
             world.add_sphere(i, sphere, &material_ids).map_err(|problem| vec![problem])?;
         }
@@ -181,6 +185,15 @@ impl World {
     fn refracts(&self, material: u32) -> bool {
         let material = &self.materials[material as usize];
         self.render.integrator == Integrator::Whitted && material.is_transparent() && material.thickness.is_none()
+    }
+
+    /// Takes the thickness from materials that let no light through: what has one is a pane.
+    fn leave_out_thickness(&mut self) {
+        for number in 0..self.materials.len() {
+            if !self.materials[number].is_transparent() && !self.has_holes(number as u32) {
+                self.materials[number].thickness = None;
+            }
+        }
     }
 
     /// Number of primitives.

@@ -109,10 +109,11 @@ impl World {
         }
     }
 
-    /// Does the outer side of a transparent surface show something besides what it reflects?
-    pub(crate) fn shows(&self, primitive: usize) -> bool {
-        let material = &self.materials[self.material_of(primitive) as usize];
-        material.ko != Rgb::gray(0.0) || material.emission != Rgb::gray(0.0) || material.dyed
+    /// Does the outer side of a transparent surface show something at a point, besides what it reflects?
+    pub(crate) fn shows(&self, primitive: usize, point: Vec3) -> bool {
+        let (material, black) = (&self.materials[self.material_of(primitive) as usize], Rgb::gray(0.0));
+        let shines = material.ko != black || material.emission != black;
+        material.dyed || (shines && self.coverage(primitive, point) > 0.0)
     }
 
     /// Does no light at all go through, by the kind of shadows that the scene has?
@@ -121,11 +122,33 @@ impl World {
         self.render.shadows() != Shadows::Tinted || (self.solid_of(primitive) == NO_SOLID && !self.is_thin(primitive))
     }
 
-    /// The share of light that passes the outer side of a transparent surface, without what Fresnel reflects.
+    /// The same at one of its points: what has holes may be whole there.
+    pub(crate) fn blocks_light_at(&self, primitive: u32, point: Vec3) -> bool {
+        self.render.shadows() != Shadows::Tinted || self.is_opaque_at(primitive as usize, point)
+    }
+
+    /// Is it a surface of no solid, and lets nothing through at this point?
+    pub(crate) fn is_opaque_at(&self, primitive: usize, point: Vec3) -> bool {
+        self.solid_of(primitive) == NO_SOLID && self.lets_through(primitive, point) == Rgb::gray(0.0)
+    }
+
+    /// What of the light on the outer side of a surface does not go through.
+    fn opacity(&self, primitive: usize, point: Vec3) -> Rgb {
+        let material = &self.materials[self.material_of(primitive) as usize];
+        let is_clear = self.solid_of(primitive) != NO_SOLID || material.thickness.is_some();
+        let whole = if is_clear { material.ko } else { Rgb::gray(1.0) };
+        whole * self.coverage(primitive, point)
+    }
+
+    /// The share of light that passes the outer side of a surface, without what Fresnel reflects.
     pub(crate) fn lets_through(&self, primitive: usize, point: Vec3) -> Rgb {
         let material = &self.materials[self.material_of(primitive) as usize];
-        let clear = Rgb::gray(1.0) - material.ko;
-        if material.dyed { clear * material.kd * self.tint(primitive, point) } else { clear }
+        let clear = Rgb::gray(1.0) - self.opacity(primitive, point);
+        if !material.dyed || self.is_cut_out(primitive) {
+            return clear;
+        }
+        let (tint, alpha) = self.pattern_at(primitive, point);
+        clear * material.kd * (tint * alpha + Rgb::gray(1.0 - alpha))
     }
 
     /// Is a crossing of the primitive on which a ray starts only its start? Not if it is the far wall of a sphere that the ray
@@ -247,10 +270,22 @@ impl World {
         surfaces.corner_uvs.get(*surfaces.corner_uvs_of.get(id)? as usize).copied()
     }
 
-    /// Is it one face that stands for a whole pane?
+    /// Is it one face with nothing inside that a ray may go through: a pane, or a surface with holes?
     pub(crate) fn is_thin(&self, primitive: usize) -> bool {
-        let material = &self.materials[self.material_of(primitive) as usize];
-        material.thickness.is_some() && material.is_transparent()
+        self.materials[self.material_of(primitive) as usize].thickness.is_some() || self.is_cut_out(primitive)
+    }
+
+    /// Is it a surface of no solid and no pane, with places where it is not there?
+    pub(crate) fn is_cut_out(&self, primitive: usize) -> bool {
+        let material = self.material_of(primitive);
+        self.has_holes(material)
+            && self.materials[material as usize].thickness.is_none()
+            && self.solid_of(primitive) == NO_SOLID
+    }
+
+    /// Is nothing there at this point?
+    pub(crate) fn is_hole(&self, primitive: usize, point: Vec3) -> bool {
+        self.is_cut_out(primitive) && self.coverage(primitive, point) == 0.0
     }
 
     /// The interpolated normal of a triangle with corners there; `None` on a flat one.

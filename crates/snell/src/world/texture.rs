@@ -3,7 +3,7 @@
 use super::World;
 use crate::film::Rgb;
 use crate::geometry::{Affine, Vec3};
-use crate::scene::{Material, Problem, Scene, Sky, Step, Texture};
+use crate::scene::{Integrator, Material, Problem, Scene, Sky, Step, Texture};
 use crate::texture::{Image, barycentric, checker, latlong_uv, sphere_uv};
 use std::sync::Arc;
 
@@ -18,29 +18,41 @@ pub(crate) struct Pattern {
 enum Colors {
     Checker([Rgb; 2]),
     Image(Arc<Image>),
+    /// A picture that is not everywhere.
+    WithAlpha(Arc<Image>),
 }
 
 impl Pattern {
-    /// `None` where the picture has not been read.
-    pub fn new(texture: &Texture) -> Option<Self> {
-        let image = || texture.pixels.clone().map(Colors::Image);
+    /// `None` where the picture has not been read. Alpha is drawn by real optics only.
+    pub fn new(texture: &Texture, integrator: Integrator) -> Option<Self> {
+        let image = || {
+            let image = texture.pixels.clone()?;
+            let has_alpha = image.alpha().is_some() && integrator == Integrator::Whitted;
+            Some(if has_alpha { Colors::WithAlpha(image) } else { Colors::Image(image) })
+        };
         let colors = texture.checker.map(Colors::Checker).or_else(image)?;
         Some(Self { colors, repeat: texture.repeat })
+    }
+
+    fn has_alpha(&self) -> bool {
+        matches!(self.colors, Colors::WithAlpha(_))
     }
 
     /// The largest value of each channel, without its sign.
     pub fn largest(&self) -> Rgb {
         match &self.colors {
             Colors::Checker(colors) => brightest(colors.iter().copied()),
-            Colors::Image(image) => brightest_texel(image),
+            Colors::Image(image) | Colors::WithAlpha(image) => brightest_texel(image),
         }
     }
 
-    fn color(&self, [u, v]: [f64; 2]) -> Rgb {
+    /// The colour at a place, and how much of the surface is there.
+    fn at(&self, [u, v]: [f64; 2]) -> (Rgb, f64) {
         let (u, v) = (u * self.repeat[0], v * self.repeat[1]);
         match &self.colors {
-            Colors::Checker(colors) => colors[usize::from(checker(u, v))],
-            Colors::Image(image) => image.bilinear(u, v),
+            Colors::Checker(colors) => (colors[usize::from(checker(u, v))], 1.0),
+            Colors::Image(image) => (image.bilinear(u, v), 1.0),
+            Colors::WithAlpha(image) => image.bilinear_with_alpha(u, v),
         }
     }
 }
@@ -49,8 +61,11 @@ fn brightest(colors: impl Iterator<Item = Rgb>) -> Rgb {
     colors.fold(Rgb::gray(0.0), |a, b| Rgb::new(a.r.max(b.r.abs()), a.g.max(b.g.abs()), a.b.max(b.b.abs())))
 }
 
+/// Of the texels that are seen.
 fn brightest_texel(image: &Image) -> Rgb {
-    brightest(image.pixels().iter().map(|texel| Rgb::from(texel.map(f64::from))))
+    let is_hole = |at: usize| image.alpha().is_some_and(|alpha| alpha[at] == 0.0);
+    let seen = image.pixels().iter().enumerate().filter(|&(at, _)| !is_hole(at));
+    brightest(seen.map(|(_, texel)| Rgb::from(texel.map(f64::from))))
 }
 
 /// Light from where nothing is.
@@ -116,11 +131,22 @@ impl World {
                 let place = ["texture", name, "image"].map(Step::from).to_vec();
                 vec![Problem { place, message: "this picture has not been read".to_owned(), help: None }]
             };
-            self.patterns.push(Pattern::new(texture).ok_or_else(unread)?);
+            self.patterns.push(Pattern::new(texture, scene.render.integrator).ok_or_else(unread)?);
         }
         let of = |m: &Material| m.texture.as_ref().and_then(|name| scene.textures.get_index_of(name));
         self.pattern_of = self.materials.iter().map(|m| of(m).map(|at| at as u32)).collect();
+        self.has_alpha = self.patterns.iter().any(Pattern::has_alpha);
         Ok(())
+    }
+
+    /// Are there places on this material where not all of it is there?
+    pub(crate) fn has_holes(&self, material: u32) -> bool {
+        self.has_alpha && self.texture_of(material).is_some_and(|pattern| self.patterns[pattern as usize].has_alpha())
+    }
+
+    /// How much of a surface is there at a point, from 0 to 1: its coverage.
+    pub(crate) fn coverage(&self, primitive: usize, point: Vec3) -> f64 {
+        if self.has_holes(self.material_of(primitive)) { self.pattern_at(primitive, point).1 } else { 1.0 }
     }
 
     /// The pattern on a material.
@@ -128,9 +154,9 @@ impl World {
         self.pattern_of.get(material as usize).copied().flatten()
     }
 
-    /// By what the colour of a surface is multiplied at a point on it.
-    pub(crate) fn tint(&self, primitive: usize, point: Vec3) -> Rgb {
-        let Some(pattern) = self.texture_of(self.material_of(primitive)) else { return Rgb::gray(1.0) };
+    /// By what the colour of a surface is multiplied at a point on it, and how much of the surface is there.
+    pub(crate) fn pattern_at(&self, primitive: usize, point: Vec3) -> (Rgb, f64) {
+        let Some(pattern) = self.texture_of(self.material_of(primitive)) else { return (Rgb::gray(1.0), 1.0) };
         let uv = match self.spheres.get(primitive) {
             Some(sphere) => {
                 let from_center = point - sphere.center;
@@ -141,6 +167,6 @@ impl World {
                 [a[0] * p + b[0] * q + c[0] * r, a[1] * p + b[1] * q + c[1] * r]
             }),
         };
-        self.patterns[pattern as usize].color(uv)
+        self.patterns[pattern as usize].at(uv)
     }
 }

@@ -213,6 +213,13 @@ fn only_whitted(scene: &Scene, found: &mut Findings) {
         unused(at("abbe"), m.abbe.is_some());
         unused(at("thickness"), m.thickness.is_some());
     }
+    for (name, texture) in &scene.textures {
+        if texture.pixels.as_ref().is_some_and(|image| image.alpha().is_some()) {
+            let message =
+                "only the integrator `whitted` draws the alpha of a texture; here the surface is everywhere".to_owned();
+            found.warning(WarningCode::NotInThisModel, place!["texture", name.as_str(), "image"], message);
+        }
+    }
     if scene.render.shadows == Some(Shadows::Tinted) {
         let message = "shadows `tinted` need the integrator `whitted`";
         found.problem(place!["render", "shadows"], message, "choose `opaque` or `off`, or integrator = \"whitted\"");
