@@ -4,6 +4,7 @@ use super::exact::{broadside, folded, segment_meets, side, sign, triangles_meet,
 use super::report::{Crossing, Found};
 use super::tree::{Budget, Tree};
 use crate::geometry::{Bounds, Vec3};
+use std::collections::HashSet;
 
 /// Steps of the search for crossings, for each face. Usual meshes need about 80.
 const CROSSING_STEPS: u64 = 400;
@@ -83,6 +84,24 @@ impl<'a> Shapes<'a> {
         segment_meets(p, q, other) || segment_meets(other[(shared + 1) % 3], other[(shared + 2) % 3], self.at(f))
     }
 
+    /// Which of some patches of faces meet a face that has no vertex in common with them. Where the work is too much, what was
+    /// not looked at counts as not met.
+    pub fn obstructed(&self, patches: &[Vec<u32>]) -> Vec<bool> {
+        let mut budget = budget(self.corners.len(), CROSSING_STEPS);
+        let meets = |patch: &Vec<u32>| {
+            let own: HashSet<u32> = patch.iter().flat_map(|&face| self.corners[face as usize]).collect();
+            let mut meets = false;
+            for &face in patch {
+                let (mut near, bounds) = (Vec::new(), &self.boxes[face as usize]);
+                self.tree.touching(&self.boxes, bounds, &mut budget, &mut |other| near.push(other));
+                near.retain(|&other| !self.corners[other as usize].iter().any(|v| own.contains(v)));
+                meets |= near.iter().any(|&other| budget.take(LOOK) && triangles_meet(self.at(face), self.at(other)));
+            }
+            meets
+        };
+        patches.iter().map(meets).collect()
+    }
+
     /// How often the faces that `counts` wind around each of some points: 1 within a solid that looks outward. `None` where
     /// the work was too much.
     pub fn windings(&self, points: &[(u32, Vec3)], counts: impl Fn(u32, u32) -> bool) -> Vec<Option<i32>> {
@@ -91,7 +110,8 @@ impl<'a> Shapes<'a> {
             .iter()
             .map(|&(part, p)| {
                 let mut winding = 0;
-                self.tree.along_x(p, &mut budget, &mut |face| {
+                let along_x = Bounds { min: p, max: Vec3::new(f64::INFINITY, p.y, p.z) };
+                self.tree.touching(&self.boxes, &along_x, &mut budget, &mut |face| {
                     if counts(part, face) {
                         winding += self.passes(face, p);
                     }
