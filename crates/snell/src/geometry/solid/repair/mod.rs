@@ -104,7 +104,10 @@ impl RepairLog {
 /// enough.
 const ROUNDS: usize = 8;
 
-const STEPS: [(Step, fn(&mut TriangleMesh, &Options) -> RepairLog); 6] = [
+/// Mends one kind of thing, and says what was done.
+type Mend = fn(&mut TriangleMesh, &Options) -> RepairLog;
+
+const STEPS: [(Step, Mend); 6] = [
     (Step::Weld, |mesh, options| RepairLog {
         welded_vertices: weld::near(mesh, options.weld.clamp(0.0, 0.1)),
         degenerate_faces: keep_kind(mesh, |kind| kind == Kind::Whole),
