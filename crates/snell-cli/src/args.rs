@@ -332,7 +332,8 @@ Exit codes: 0 a solid, 1 no solid, 2 wrong usage, 3 the model cannot be read")]
 pub struct CheckArgs {
     /// A model (.obj .ply .stl), or a scene with meshes
     pub model: String,
-    /// Mend what can be mended without guessing, and write it to the file of -o
+    /// Mend what can be mended without guessing, and write it to the file of -o; nothing is made worse, and nothing written
+    /// if nothing can be mended
     #[arg(long, requires = "output")]
     pub repair: bool,
     /// The mended model, .obj
@@ -341,7 +342,8 @@ pub struct CheckArgs {
     /// Overwrite the file if there is one
     #[arg(long, requires = "output")]
     pub force: bool,
-    /// Vertices so near to each other become one, as a share of the model's diagonal, at most 0.1; 0: only equal ones
+    /// Vertices of open edges so near to each other become one, as a share of the model's diagonal, at most 0.1; 0: only
+    /// equal ones
     #[arg(long, value_name = "SHARE", default_value_t = 0.0, value_parser = share, requires = "repair")]
     pub weld: f64,
     /// Fill holes of at most so many edges; 0: none

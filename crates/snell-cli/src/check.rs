@@ -7,7 +7,7 @@ use crate::output::{refuse_existing, refuse_inputs};
 use crate::say::{self, FAILED, Failure, OrFail, Outcome, SCENE, USAGE};
 use crate::solid_text::{as_json, as_text, done_json, done_text};
 use snell::geometry::TriangleMesh;
-use snell::geometry::solid::{Options, Report as Findings, Verdict, check, repair};
+use snell::geometry::solid::{Options, RepairLog, Report as Findings, Step, Verdict, check, repair};
 use snell::scene::WarningCode;
 use snell_formats::given::Given;
 use snell_formats::model::{Model, parse_model, write_obj};
@@ -50,6 +50,12 @@ fn one_model(args: &CheckArgs, path: &Path) -> Outcome {
     };
     let options = Options { weld: args.weld, largest_hole: usize::from(args.holes) };
     let (mended, log) = repair(&mesh, &options);
+    if log.is_empty() && !findings.is_solid() {
+        let text = [as_text(&args.model, &mesh, &findings, ""), done_text(&log)];
+        let json = serde_json::json!({ "before": as_json(&args.model, &findings), "done": done_json(&log) });
+        show(args, &text.join("\n"), &json)?;
+        return Err(Failure::new(FAILED, nothing_mended(output, &log)));
+    }
     let after = check(&mended);
     disk::write(output, |out| write_obj(&mended, &libraries, out)).or_fail(FAILED)?;
     let name = output.display().to_string();
@@ -102,6 +108,23 @@ fn exit(all: &[Findings]) -> Outcome {
         return Ok(());
     }
     Err(Failure { code: FAILED, reports: Vec::new() })
+}
+
+/// Why a model that is no solid stays as it is.
+fn nothing_mended(output: &Path, log: &RepairLog) -> Report {
+    let (why, help) = if log.undone.contains(&Step::Weld) {
+        ("the weld would leave it worse", "try a smaller --weld")
+    } else if log.obstructed_holes > 0 {
+        ("what would fill its holes meets other faces", "the holes have to be closed where the model was made")
+    } else if log.undone.is_empty() {
+        (
+            "what is wrong with it cannot be mended without guessing",
+            "larger holes are filled with --holes, and cracks with --weld",
+        )
+    } else {
+        ("what was tried would leave it worse", "it has to be mended where it was made")
+    };
+    Report::error(format!("nothing was mended, and `{}` was not written: {why}", output.display())).help(help)
 }
 
 fn advice(args: &CheckArgs, findings: &Findings) -> String {

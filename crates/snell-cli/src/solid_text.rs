@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 use snell::explain::text::six_digits;
-use snell::geometry::solid::{Component, EdgePlace, FacePlace, Found, Orientation, RepairLog, Report, Verdict};
+use snell::geometry::solid::{Component, EdgePlace, FacePlace, Found, Orientation, RepairLog, Report, Step, Verdict};
 use snell::geometry::{TriangleMesh, Vec3};
 use std::fmt::Write;
 
@@ -134,15 +134,30 @@ pub fn done_text(log: &RepairLog) -> String {
         (log.new_faces, "new faces in them"),
         (log.turned_components, "components turned outward"),
         (log.unused_vertices, "unused vertices removed"),
+        (log.obstructed_holes, "holes left open: what would fill them meets other faces"),
     ] {
         if count > 0 {
             let _ = writeln!(text, "  {count:<9}{what}");
         }
     }
-    if log.is_empty() {
+    for step in &log.undone {
+        let _ = writeln!(text, "  undone   {}: the model would be worse", step_name(*step));
+    }
+    if *log == RepairLog::default() {
         text.push_str("  nothing to do\n");
     }
     text
+}
+
+fn step_name(step: Step) -> &'static str {
+    match step {
+        Step::Weld => "weld",
+        Step::Copies => "remove copies of faces",
+        Step::Turn => "turn faces to agree with their neighbours",
+        Step::Fill => "fill holes",
+        Step::Lines => "mend faces without area",
+        Step::Outward => "turn components outward",
+    }
 }
 
 /// The same as [`done_text`].
@@ -152,6 +167,8 @@ pub fn done_json(log: &RepairLog) -> Value {
         "degenerate_faces": log.degenerate_faces, "duplicate_faces": log.duplicate_faces,
         "turned_faces": log.turned_faces, "filled_holes": log.filled_holes, "new_faces": log.new_faces,
         "turned_components": log.turned_components, "unused_vertices": log.unused_vertices,
+        "obstructed_holes": log.obstructed_holes,
+        "undone": log.undone.iter().map(|step| format!("{step:?}").to_lowercase()).collect::<Vec<_>>(),
     })
 }
 

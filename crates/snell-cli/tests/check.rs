@@ -62,6 +62,22 @@ fn what_is_no_solid_ends_with_1_and_can_be_mended() {
 }
 
 #[test]
+fn what_cannot_be_mended_is_not_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    fs::write(at.join("sheet.obj"), "v 0 0 0\nv 1 0 0\nv 0 0.01 0\nf 1 2 3\n").unwrap();
+    for (options, why) in [(&[][..], "without guessing"), (&["--weld", "0.1"], "smaller --weld")] {
+        let output = snell(at, &[&["check", "sheet.obj", "--repair", "-o", "m.obj"], options].concat());
+        assert!(output.status.code() == Some(1) && !at.join("m.obj").exists());
+        let said = stderr(&output);
+        assert!(
+            said.starts_with("error: nothing was mended, and `m.obj` was not written") && said.contains(why),
+            "{said}"
+        );
+    }
+}
+
+#[test]
 fn wrong_usage_and_what_cannot_be_read() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();

@@ -350,7 +350,7 @@ fn an_open_transparent_mesh_is_refused_and_says_where() {
     glass(&mut scene, "glass", 1.5, 0);
     mesh(&mut scene, open, "glass");
     let problem = World::new(&scene).unwrap_err().remove(0);
-    assert!(problem.message.contains("not a solid: 3 of its edges have a face on one side only"), "{problem}");
+    assert!(problem.message.contains("not a solid: it is open along 3 edges"), "{problem}");
     scene.meshes[0].open = Some(snell::scene::OpenMesh::Fill);
     let filled = picture(&scene);
     scene.meshes[0].geometry = Some(Arc::new(cuboid([-1.0; 3], [1.0; 3])));

@@ -35,7 +35,7 @@ fn open_meshes_are_refused_and_say_how_many_edges_are_open() {
     // Counted by others as well: `crates/snell-cli/tests/check.rs`.
     for (model, open) in [("stanford-bunny.obj", 223), ("teapot.obj", 160), ("suzanne.obj", 42)] {
         let problems = World::new(&as_glass(&folder, model)).unwrap_err();
-        let said = format!("not a solid: {open} of its edges have a face on one side only");
+        let said = format!("not a solid: it is open along {open} edges");
         assert!(problems.len() == 1 && problems[0].message.contains(&said), "{model}: {problems:?}");
     }
 }

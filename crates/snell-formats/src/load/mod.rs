@@ -223,11 +223,17 @@ pub fn kind_of(path: &Path, text: &str) -> Kind {
             let first = text.lines().map(str::trim).find(|l| !l.is_empty() && !l.starts_with('#')).unwrap_or("");
             match first {
                 _ if first.starts_with('{') => Kind::Json,
+                _ if is_nff(first) => Kind::Nff,
                 _ if first.starts_with('[') || first.contains('=') => Kind::Toml,
                 _ => Kind::Driver,
             }
         }
     }
+}
+
+/// Does a text start with an entity of NFF? Its names are one letter or two; of drivers only `d` is, the distance of the image.
+fn is_nff(line: &str) -> bool {
+    line.split_whitespace().next().is_some_and(|word| ["v", "b", "l", "f", "s", "p", "pp", "c"].contains(&word))
 }
 
 /// Reads a scene from its text. File names are relative to `folder`.

@@ -3,7 +3,7 @@
 use super::{NO_PRIMITIVE, World};
 use crate::film::Rgb;
 use crate::geometry::bvh::{Instance, Shapes};
-use crate::geometry::solid::{Component, EdgePlace, Found, Orientation, Report, structure};
+use crate::geometry::solid::{Component, EdgePlace, Found, Orientation, Report, Verdict, structure};
 use crate::geometry::{Affine, Bounds, TriangleMesh, Vec3, triangle};
 use crate::optics::dispersion::LINE_D_NM;
 use crate::optics::spectrum;
@@ -110,22 +110,29 @@ fn why_not(report: &Report) -> String {
             format!(", the first from {a} to {b}")
         })
     };
-    if !report.boundary.is_empty() {
-        return format!(
-            "{} of its edges have a face on one side only{}",
-            report.boundary.count,
-            edges(&report.boundary)
-        );
+    // In the order and the words of `Report::verdict`, so that `snell check` says the same.
+    let open = report.components.iter().map(|c| c.open_edges).sum::<usize>();
+    match report.verdict() {
+        Verdict::Empty => "it has no faces".to_owned(),
+        Verdict::Open if open == 0 => {
+            format!("{} faces have vertices that are not there or not finite", report.broken.count)
+        }
+        Verdict::Open if report.boundary.is_empty() => {
+            format!(
+                "it is open along {open} edges: an odd number of faces, more than two, meet there{}",
+                edges(&report.non_manifold)
+            )
+        }
+        Verdict::Open => format!("it is open along {open} edges{}", edges(&report.boundary)),
+        Verdict::Misoriented if report.misoriented.is_empty() => {
+            "its faces cannot all look to one side, as on a Möbius strip".to_owned()
+        }
+        Verdict::Misoriented => {
+            let count = report.misoriented.count;
+            format!("at {count} of its edges neighbouring faces look opposite ways{}", edges(&report.misoriented))
+        }
+        Verdict::Flat | Verdict::InsideOut | Verdict::Solid => "it encloses no volume".to_owned(),
     }
-    if !report.misoriented.is_empty() {
-        let count = report.misoriented.count;
-        return format!("at {count} of its edges neighbouring faces look opposite ways{}", edges(&report.misoriented));
-    }
-    if !report.non_manifold.is_empty() {
-        let count = report.non_manifold.count;
-        return format!("{count} of its edges have more than two faces{}", edges(&report.non_manifold));
-    }
-    if report.components.is_empty() { "it has no faces".to_owned() } else { "it encloses no volume".to_owned() }
 }
 
 impl Solid {

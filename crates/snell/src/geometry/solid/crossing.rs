@@ -1,9 +1,12 @@
 //! Faces that meet where they should not, and shells that lie in others.
 
-use super::exact::{broadside, folded, segment_meets, side, sign, triangles_meet, turn};
+use super::exact::{
+    broadside, folded, plainly_apart, plainly_apart_elsewhere, segment_meets, side, sign, triangles_meet, turn,
+};
 use super::report::{Crossing, Found};
 use super::tree::{Budget, Tree};
 use crate::geometry::{Bounds, Vec3};
+use std::collections::HashSet;
 
 /// Steps of the search for crossings, for each face. Usual meshes need about 80.
 const CROSSING_STEPS: u64 = 400;
@@ -14,8 +17,11 @@ const CAVITY_STEPS: u64 = 50;
 /// Steps of a search in any mesh: enough for two fans of a thousand faces, all pairs of which meet in a vertex.
 const LEAST_STEPS: u64 = 30_000_000;
 
-/// Steps that an exact look at two faces counts for: a microsecond where they are in one plane.
-const LOOK: u64 = 10;
+/// Steps that a look at two faces counts for.
+const LOOK: u64 = 5;
+
+/// Steps that an exact look counts for besides: microseconds where they are in one plane.
+const EXACT_LOOK: u64 = 50;
 
 fn budget(faces: usize, each: u64) -> Budget {
     Budget(LEAST_STEPS + each * faces as u64)
@@ -50,7 +56,7 @@ impl<'a> Shapes<'a> {
         let mut budget = budget(self.corners.len(), CROSSING_STEPS);
         let mut found = Found::default();
         self.tree.pairs(&self.boxes, &mut budget, &mut |f, g, budget| {
-            if budget.take(LOOK) && self.cross(f, g) {
+            if budget.take(LOOK) && self.cross(f, g, budget) {
                 let (a, b) = (&self.boxes[f as usize], &self.boxes[g as usize]);
                 found.add(|| Crossing { faces: [f, g], at: middle_of_both(a, b) });
             }
@@ -58,17 +64,18 @@ impl<'a> Shapes<'a> {
         (found, budget.0 > 0)
     }
 
-    fn cross(&self, f: u32, g: u32) -> bool {
+    fn cross(&self, f: u32, g: u32, budget: &mut Budget) -> bool {
         let (s, t) = (self.corners[f as usize], self.corners[g as usize]);
         let point = |v: u32| self.points[v as usize];
-        let own = |i: usize| [s[(i + 1) % 3], s[(i + 2) % 3]].map(point);
         let shared = s.map(|v| t.iter().position(|&w| w == v));
         match shared {
-            [None, None, None] => triangles_meet(self.at(f), self.at(g)),
-            // One vertex: they meet elsewhere if the edge across from it meets the other triangle.
-            [Some(j), None, None] => self.across(own(0), j, f, g),
-            [None, Some(j), None] => self.across(own(1), j, f, g),
-            [None, None, Some(j)] => self.across(own(2), j, f, g),
+            [None, None, None] => {
+                let (s, t) = (self.at(f), self.at(g));
+                !plainly_apart(s, t) && budget.take(EXACT_LOOK) && triangles_meet(s, t)
+            }
+            [Some(j), None, None] => self.meet_elsewhere((f, 0), (g, j), budget),
+            [None, Some(j), None] => self.meet_elsewhere((f, 1), (g, j), budget),
+            [None, None, Some(j)] => self.meet_elsewhere((f, 2), (g, j), budget),
             // One edge: they meet elsewhere only if one is folded onto the other.
             [None, Some(i), Some(j)] => folded(point(s[1]), point(s[2]), point(s[0]), point(t[3 - i - j])),
             [Some(i), None, Some(j)] => folded(point(s[2]), point(s[0]), point(s[1]), point(t[3 - i - j])),
@@ -78,9 +85,34 @@ impl<'a> Shapes<'a> {
         }
     }
 
-    fn across(&self, [p, q]: [Vec3; 2], shared: usize, f: u32, g: u32) -> bool {
-        let other = self.at(g);
-        segment_meets(p, q, other) || segment_meets(other[(shared + 1) % 3], other[(shared + 2) % 3], self.at(f))
+    /// Do two faces that share one vertex, each given with its number there, have another point in common?
+    fn meet_elsewhere(&self, (f, i): (u32, usize), (g, j): (u32, usize), budget: &mut Budget) -> bool {
+        let (mut s, mut t) = (self.at(f), self.at(g));
+        s.rotate_left(i);
+        t.rotate_left(j);
+        // They do if the edge across from the vertex meets the other triangle.
+        !plainly_apart_elsewhere(s, t)
+            && budget.take(EXACT_LOOK)
+            && (segment_meets(s[1], s[2], t) || segment_meets(t[1], t[2], s))
+    }
+
+    /// Which of some patches of faces meet a face that has no vertex in common with them. Where the work is too much, what was
+    /// not looked at counts as not met.
+    pub fn obstructed(&self, patches: &[Vec<u32>]) -> Vec<bool> {
+        let mut budget = budget(self.corners.len(), CROSSING_STEPS);
+        let meets = |patch: &Vec<u32>| {
+            let own: HashSet<u32> = patch.iter().flat_map(|&face| self.corners[face as usize]).collect();
+            let mut meets = false;
+            for &face in patch {
+                let (mut near, bounds) = (Vec::new(), &self.boxes[face as usize]);
+                self.tree.touching(&self.boxes, bounds, &mut budget, &mut |other| near.push(other));
+                near.retain(|&other| !self.corners[other as usize].iter().any(|v| own.contains(v)));
+                meets |=
+                    near.iter().any(|&other| budget.take(EXACT_LOOK) && triangles_meet(self.at(face), self.at(other)));
+            }
+            meets
+        };
+        patches.iter().map(meets).collect()
     }
 
     /// How often the faces that `counts` wind around each of some points: 1 within a solid that looks outward. `None` where
@@ -91,7 +123,8 @@ impl<'a> Shapes<'a> {
             .iter()
             .map(|&(part, p)| {
                 let mut winding = 0;
-                self.tree.along_x(p, &mut budget, &mut |face| {
+                let along_x = Bounds { min: p, max: Vec3::new(f64::INFINITY, p.y, p.z) };
+                self.tree.touching(&self.boxes, &along_x, &mut budget, &mut |face| {
                     if counts(part, face) {
                         winding += self.passes(face, p);
                     }

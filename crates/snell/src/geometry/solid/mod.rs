@@ -19,7 +19,7 @@ mod tests;
 mod topology;
 mod tree;
 
-pub use repair::{Options, RepairLog, repair};
+pub use repair::{Options, RepairLog, Step, repair};
 pub use report::{
     Component, Crossing, EdgePlace, FacePlace, Found, LOCATED, NO_COMPONENT, Orientation, Report, Verdict,
 };

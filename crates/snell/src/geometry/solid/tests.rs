@@ -22,7 +22,7 @@ fn cube(at: [f64; 3], size: f64) -> TriangleMesh {
     mesh(&(0..8).map(corner).collect::<Vec<_>>(), &faces)
 }
 
-fn torus(around: u32, across: u32) -> TriangleMesh {
+pub(super) fn torus(around: u32, across: u32) -> TriangleMesh {
     let turn = |i: u32, n: u32| crate::lanes::elementary::sin_cos_degrees(360.0 * f64::from(i) / f64::from(n));
     let vertex = |i: u32| {
         let ((sin, cos), (s, c)) = (turn(i / across, around), turn(i % across, across));
@@ -231,6 +231,37 @@ fn copies_of_faces() {
 }
 
 #[test]
+fn a_copy_that_closes_another_solid_stays() {
+    // Two tetrahedra on one base: without one of its copies, one of them would be open.
+    let low = [[0., 0., 0.], [1., 0., 0.], [0., 1., 0.], [0.1, 0.1, 1.], [0.1, 0.1, 2.]];
+    let faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3], [0, 2, 1], [0, 1, 4], [1, 2, 4], [2, 0, 4]];
+    let nested = mesh(&low, &faces);
+    assert_eq!((check(&nested).verdict(), check(&nested).duplicate.count), (Verdict::Solid, 1));
+    assert_eq!(mended(&nested), (nested.clone(), RepairLog::default()));
+    // Elsewhere in the same mesh a copy is one too many all the same.
+    let mut beside = cube([5., 0., 0.], 1.0);
+    beside.faces.push(beside.faces[3]);
+    let (once, log) = mended(&both(nested, &beside));
+    assert_eq!((once.faces.len(), log), (20, RepairLog { duplicate_faces: 1, ..RepairLog::default() }));
+    assert_eq!(check(&once).verdict(), Verdict::Solid);
+}
+
+#[test]
+fn a_hole_with_something_in_it_is_left_open() {
+    let mut m = cube([0., 0., 0.], 1.0);
+    let lid = |f: &[u32; 3]| f.iter().all(|&v| v >= 4);
+    m.faces.retain(|f| !lid(f));
+    assert!(mended(&m).1.filled_holes == 1);
+    let spike = cube([0.4, 0.4, 0.5], 0.2);
+    let within = both(m.clone(), &spike);
+    assert_eq!(check(&mended(&within).0).verdict(), Verdict::Solid);
+    let longer = |v: &Vec3| Vec3::new(v.x, v.y, if v.z > 0.6 { 1.5 } else { v.z });
+    let tall = TriangleMesh { vertices: spike.vertices.iter().map(longer).collect(), ..spike };
+    let through = both(m, &tall);
+    assert_eq!(mended(&through), (through.clone(), RepairLog { obstructed_holes: 1, ..RepairLog::default() }));
+}
+
+#[test]
 fn faces_without_area() {
     let mut m = cube([0., 0., 0.], 1.0);
     m.faces.push([0, 0, 1]);
@@ -351,6 +382,19 @@ fn a_tolerance_welds_what_is_near_but_no_walls() {
     assert!(check(&sheet).verdict() == Verdict::Flat && !check(&sheet).is_solid());
     let thin = mesh(&tetra().vertices.iter().map(|v| [v.x, v.y, v.z * 1e-8]).collect::<Vec<_>>(), &tetra().faces);
     assert_eq!(repair(&thin, &options).0, thin);
+    // What is closed is left as it is, however short its edges are; beside it a crack is closed all the same.
+    let (wide, fine) = (Options { weld: 0.05, ..Options::default() }, torus(60, 40));
+    assert_eq!(repair(&fine, &wide), (fine.clone(), RepairLog::default()));
+    let (welded, log) = repair(&both(fine.clone(), &m), &wide);
+    assert_eq!((check(&welded).verdict(), welded.vertices.len()), (Verdict::Solid, fine.vertices.len() + 8));
+    assert_eq!((&welded.faces[..fine.faces.len()], log.degenerate_faces), (&fine.faces[..], 0));
+}
+
+#[test]
+fn a_weld_that_would_leave_nothing_is_undone() {
+    let ribbon = mesh(&[[0., 0., 0.], [1., 0., 0.], [0., 0.01, 0.], [1., 0.01, 0.]], &[[0, 1, 3], [0, 3, 2]]);
+    let log = RepairLog { undone: vec![Step::Weld], ..RepairLog::default() };
+    assert_eq!(repair(&ribbon, &Options { weld: 0.1, ..Options::default() }), (ribbon.clone(), log));
 }
 
 /// Each would take hours where time grows with the square of the number of faces. The limit is generous for slow machines.

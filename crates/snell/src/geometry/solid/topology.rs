@@ -67,6 +67,11 @@ impl Topology {
         self.uses.chunk_by(|a, b| a.ends == b.ends)
     }
 
+    /// The faces of each edge that has an odd number of them.
+    pub fn open_edges(&self) -> impl Iterator<Item = &[Use]> {
+        self.edges().filter(|edge| edge.len() % 2 == 1)
+    }
+
     /// The faces of one edge, given by its ends.
     pub fn edge(&self, [a, b]: [u32; 2]) -> &[Use] {
         let ends = [a.min(b), a.max(b)];

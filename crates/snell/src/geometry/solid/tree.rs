@@ -3,7 +3,7 @@
 //! Halved by number at every node, so its depth is log n whatever the faces are. What it costs to ask is bounded by a budget:
 //! of a million faces in one place all pairs are near each other.
 
-use crate::geometry::{Bounds, Vec3};
+use crate::geometry::Bounds;
 
 /// Faces in a leaf.
 const LEAF: usize = 4;
@@ -108,19 +108,20 @@ impl Tree {
         }
     }
 
-    /// Calls `met` for every face whose box the line from `from` along x reaches, until the budget is spent.
-    pub fn along_x(&self, from: Vec3, budget: &mut Budget, met: &mut impl FnMut(u32)) {
+    /// Calls `met` for every face whose box touches this one, until the budget is spent.
+    pub fn touching(&self, boxes: &[Bounds], bounds: &Bounds, budget: &mut Budget, met: &mut impl FnMut(u32)) {
         let mut open = if self.nodes.is_empty() { vec![] } else { vec![0] };
         while let Some(node) = open.pop() {
-            let Node { bounds: b, start, end, second } = &self.nodes[node];
-            let reached =
-                b.max.x >= from.x && (b.min.y..=b.max.y).contains(&from.y) && (b.min.z..=b.max.z).contains(&from.z);
+            let Node { bounds: own, start, end, second } = &self.nodes[node];
             if !budget.take(1 + if *second == 0 { (end - start) as u64 } else { 0 }) {
                 return;
             }
             match second {
-                _ if !reached => {}
-                0 => self.order[*start..*end].iter().for_each(|&face| met(face)),
+                _ if !touch(own, bounds) => {}
+                0 => {
+                    let faces = self.order[*start..*end].iter();
+                    faces.filter(|face| touch(&boxes[**face as usize], bounds)).for_each(|&face| met(face));
+                }
                 &second => open.extend([node + 1, second]),
             }
         }

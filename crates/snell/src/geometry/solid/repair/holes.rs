@@ -2,13 +2,15 @@
 //!
 //! A hole is a loop of edges with one face each. It is filled with the triangles that together are smallest (Barequet and
 //! Sharir 1995, "Filling gaps in the boundary of a polyhedron"), which in a plane is the polygon itself. What is filled
-//! must not become something else: a loop around a lone sheet is its rim and no hole, and an edge that is there already
-//! must not get a third face.
+//! must not become something else: a loop around a lone sheet is its rim and no hole, an edge that is there already must not
+//! get a third face, and nothing may be in the way.
 
+use super::super::crossing::{Shapes, with_area};
 use super::super::topology::Topology;
 use super::super::{Outline, Report};
+use super::RepairLog;
 use crate::geometry::{NO_UVS, TriangleMesh, Vec3};
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 /// Filling a loop of n edges takes n³/6 steps. When so many are spent, the remaining holes stay.
 const STEPS: u64 = 500_000_000;
@@ -24,11 +26,11 @@ struct Rim {
     face: u32,
 }
 
-/// Fills holes of at most `largest` edges; returns how many, and with how many faces.
-pub(super) fn fill(mesh: &mut TriangleMesh, largest: usize) -> (usize, usize) {
-    let Outline { topology, report, .. } = Outline::of(mesh);
+/// Fills holes of at most `largest` edges.
+pub(super) fn fill(mesh: &mut TriangleMesh, largest: usize) -> RepairLog {
+    let Outline { topology, report, points, with_area: faces, .. } = Outline::of(mesh);
     if report.boundary.is_empty() || largest == 0 {
-        return (0, 0);
+        return RepairLog::default();
     }
     let component = |rim: &Rim| report.component_of[rim.face as usize];
     let mut rims: Vec<Rim> = topology
@@ -42,7 +44,7 @@ pub(super) fn fill(mesh: &mut TriangleMesh, largest: usize) -> (usize, usize) {
         .collect();
     rims.sort_unstable();
 
-    let mut patches: HashMap<u32, Vec<Patch>> = HashMap::new();
+    let mut patches: Vec<Patch> = Vec::new();
     let mut new_edges = HashSet::new();
     let mut steps = STEPS;
     for rim in loops(&rims, mesh.vertices.len()) {
@@ -53,12 +55,17 @@ pub(super) fn fill(mesh: &mut TriangleMesh, largest: usize) -> (usize, usize) {
         if one && rim.len() <= largest && rim.len() - 2 < report.components[part as usize].faces && cost <= steps {
             steps -= cost;
             if let Some(faces) = triangulate(&rim, mesh, &topology, &mut new_edges) {
-                patches.entry(part).or_default().push(Patch { slot: rim[0].face, edges: rim.len(), faces });
+                patches.push(Patch { part, slot: rim[0].face, edges: rim.len(), faces });
             }
         }
     }
-    let mut chosen: Vec<(u32, Vec<Patch>)> = patches.into_iter().collect();
-    chosen.sort_unstable_by_key(|(part, _)| *part);
+    let count = patches.len();
+    let patches = unobstructed(patches, topology.corners, faces, &points);
+    let obstructed_holes = count - patches.len();
+    let mut chosen: BTreeMap<u32, Vec<Patch>> = BTreeMap::new();
+    for patch in patches {
+        chosen.entry(patch.part).or_default().push(patch);
+    }
     let closed: HashMap<u32, (f64, f64)> = enclosed(mesh, &report, &chosen);
     let (mut holes, before) = (0, mesh.faces.len());
     for (_, patches) in
@@ -76,11 +83,27 @@ pub(super) fn fill(mesh: &mut TriangleMesh, largest: usize) -> (usize, usize) {
             }
         }
     }
-    (holes, mesh.faces.len() - before)
+    RepairLog { filled_holes: holes, new_faces: mesh.faces.len() - before, obstructed_holes, ..RepairLog::default() }
+}
+
+/// The patches that meet nothing but what is around their holes. Slivers there may well be folded onto what is beside them,
+/// as in a crack along an edge that has a vertex near it.
+fn unobstructed(patches: Vec<Patch>, mut corners: Vec<[u32; 3]>, mut faces: Vec<u32>, points: &[Vec3]) -> Vec<Patch> {
+    let mut number = |patch: &Patch| {
+        let first = corners.len() as u32;
+        corners.extend(&patch.faces);
+        (first..corners.len() as u32).collect()
+    };
+    let numbers: Vec<Vec<u32>> = patches.iter().map(&mut number).collect();
+    faces.extend(with_area(numbers.iter().flatten().copied(), points, &corners).0);
+    let obstructed = Shapes::new(points, &corners, faces).obstructed(&numbers);
+    patches.into_iter().zip(obstructed).filter(|(_, obstructed)| !obstructed).map(|(patch, _)| patch).collect()
 }
 
 /// What fills one hole.
 struct Patch {
+    /// The component that it is a hole of.
+    part: u32,
     /// The face whose slot the new ones get.
     slot: u32,
     edges: usize,
@@ -88,11 +111,11 @@ struct Patch {
 }
 
 /// For each component that its patches close, its signed volume and the sum of the unsigned parts of it.
-fn enclosed(mesh: &TriangleMesh, report: &Report, chosen: &[(u32, Vec<Patch>)]) -> HashMap<u32, (f64, f64)> {
+fn enclosed(mesh: &TriangleMesh, report: &Report, chosen: &BTreeMap<u32, Vec<Patch>>) -> HashMap<u32, (f64, f64)> {
     let mut sums: HashMap<u32, (f64, f64)> = chosen
         .iter()
         .filter(|(part, patches)| {
-            patches.iter().map(|p| p.edges).sum::<usize>() == report.components[*part as usize].open_edges
+            patches.iter().map(|p| p.edges).sum::<usize>() == report.components[**part as usize].open_edges
         })
         .map(|(part, _)| (*part, (0.0, 0.0)))
         .collect();

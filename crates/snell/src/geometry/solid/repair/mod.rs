@@ -4,8 +4,11 @@
 //! go; faces are turned so that neighbours agree; small holes are filled; faces that are a line are mended; solids are
 //! turned outward; vertices that no face uses go. What is already right is left as it is, so that repairing twice is
 //! repairing once. Faces keep their materials and texture coordinates; those that fill holes have no texture coordinates.
+//!
+//! Each step is tried, and undone if it leaves the mesh [worse](faults) than it was.
 
 mod faces;
+mod faults;
 mod holes;
 mod lines;
 #[cfg(test)]
@@ -15,12 +18,13 @@ mod weld;
 use super::topology::{Kind, Topology};
 use super::{NO_COMPONENT, Report, structure};
 use crate::geometry::TriangleMesh;
+use faults::Faults;
 
 /// What to mend.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// Vertices at most so far from each other become one, as a share of the diagonal of the mesh, from 0 (equal positions
-    /// only) to 0.1.
+    /// Vertices on open edges become one where they are at most so far from each other, as a share of the diagonal of the
+    /// mesh, from 0 (equal positions only) to 0.1. It closes cracks: what is closed keeps its details.
     pub weld: f64,
     /// Holes of at most so many edges are filled; 0: none. At most 1000.
     pub largest_hole: usize,
@@ -53,6 +57,27 @@ pub struct RepairLog {
     pub new_faces: usize,
     /// Vertices that no face used: removed.
     pub unused_vertices: usize,
+    /// Holes that were left open, because what would fill them meets other faces.
+    pub obstructed_holes: usize,
+    /// Steps that were undone, because they would have left the mesh worse.
+    pub undone: Vec<Step>,
+}
+
+/// A part of the repair that can be undone by itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Step {
+    /// Vertices near each other become one.
+    Weld,
+    /// Copies of faces go.
+    Copies,
+    /// Faces are turned so that neighbours agree.
+    Turn,
+    /// Holes are filled.
+    Fill,
+    /// Faces that are a line are mended.
+    Lines,
+    /// Components are turned outward.
+    Outward,
 }
 
 impl RepairLog {
@@ -68,9 +93,10 @@ impl RepairLog {
         self.unused_vertices += more.unused_vertices;
     }
 
-    /// Was there nothing to do?
+    /// Is the mesh as it was?
     pub fn is_empty(&self) -> bool {
-        *self == Self::default()
+        let left = Self { obstructed_holes: self.obstructed_holes, undone: self.undone.clone(), ..Self::default() };
+        *self == left
     }
 }
 
@@ -78,46 +104,62 @@ impl RepairLog {
 /// enough.
 const ROUNDS: usize = 8;
 
-/// A mended mesh, and what was done to it. A solid stays one; what cannot be mended is left, and
-/// [`check`](super::check) says of it.
-pub fn repair(mesh: &TriangleMesh, options: &Options) -> (TriangleMesh, RepairLog) {
-    let (mended, log) = mend(mesh, options);
-    if options.weld > 0.0 {
-        // A tolerance can weld what was meant to be two: a thin wall's sides.
-        let (before, after) = (structure(mesh), structure(&mended));
-        if before.is_solid() && !(after.is_solid() && after.components.len() == before.components.len()) {
-            return mend(mesh, &Options { weld: 0.0, ..*options });
-        }
-    }
-    (mended, log)
-}
+/// Mends one kind of thing, and says what was done.
+type Mend = fn(&mut TriangleMesh, &Options) -> RepairLog;
 
-fn mend(mesh: &TriangleMesh, options: &Options) -> (TriangleMesh, RepairLog) {
+const STEPS: [(Step, Mend); 6] = [
+    (Step::Weld, |mesh, options| RepairLog {
+        welded_vertices: weld::near(mesh, options.weld.clamp(0.0, 0.1)),
+        degenerate_faces: keep_kind(mesh, |kind| kind == Kind::Whole),
+        ..RepairLog::default()
+    }),
+    (Step::Copies, |mesh, _| RepairLog { duplicate_faces: faces::remove_copies(mesh), ..RepairLog::default() }),
+    (Step::Turn, |mesh, _| RepairLog { turned_faces: faces::agree(mesh), ..RepairLog::default() }),
+    (Step::Fill, |mesh, options| holes::fill(mesh, options.largest_hole.min(1000))),
+    (Step::Lines, |mesh, _| RepairLog { degenerate_faces: lines::mend(mesh), ..RepairLog::default() }),
+    (Step::Outward, |mesh, _| RepairLog { turned_components: turn_outward(mesh), ..RepairLog::default() }),
+];
+
+/// A mended mesh, and what was done to it. What cannot be mended is left, and [`check`](super::check) says of it.
+///
+/// The mended mesh has no more [faults](faults) than the mesh, and a solid stays one.
+pub fn repair(mesh: &TriangleMesh, options: &Options) -> (TriangleMesh, RepairLog) {
     let (mut mesh, mut done) = (mesh.clone(), RepairLog::default());
+    // Nothing of this changes what the surface is.
+    done.broken_faces = keep_kind(&mut mesh, |kind| kind != Kind::Broken);
+    done.welded_vertices = weld::equal(&mut mesh);
+    done.degenerate_faces = keep_kind(&mut mesh, |kind| kind == Kind::Whole);
+    let mut faults = Faults::of(&mesh);
     for _ in 0..ROUNDS {
-        let log = round(&mut mesh, options);
-        done.add(&log);
-        if log.is_empty() {
+        let before = done.clone();
+        (done.obstructed_holes, done.undone) = (0, Vec::new());
+        for (step, mend) in STEPS {
+            let mut tried = mesh.clone();
+            let log = mend(&mut tried, options);
+            done.obstructed_holes += log.obstructed_holes;
+            if log.is_empty() {
+                continue;
+            }
+            let left = Faults::of(&tried);
+            if left.worse_than(&faults) {
+                done.undone.push(step);
+            } else {
+                (mesh, faults) = (tried, left);
+                done.add(&log);
+            }
+        }
+        if done == before {
             break;
         }
     }
+    done.unused_vertices = weld::drop_unused(&mut mesh).saturating_sub(done.welded_vertices);
     (mesh, done)
 }
 
-fn round(mesh: &mut TriangleMesh, options: &Options) -> RepairLog {
-    let mut log = RepairLog::default();
+/// Keeps the faces of the kinds that are wanted; returns how many are gone.
+fn keep_kind(mesh: &mut TriangleMesh, wanted: impl Fn(Kind) -> bool) -> usize {
     let kinds = Topology::of(mesh).kinds;
-    log.broken_faces = keep(mesh, |face| kinds[face] != Kind::Broken);
-    log.welded_vertices = weld::weld(mesh, options.weld.clamp(0.0, 0.1));
-    let kinds = Topology::of(mesh).kinds;
-    log.degenerate_faces = keep(mesh, |face| kinds[face] == Kind::Whole);
-    log.duplicate_faces = faces::remove_copies(mesh);
-    log.turned_faces = faces::agree(mesh);
-    (log.filled_holes, log.new_faces) = holes::fill(mesh, options.largest_hole.min(1000));
-    log.degenerate_faces += lines::mend(mesh);
-    log.turned_components = turn_outward(mesh);
-    log.unused_vertices = weld::drop_unused(mesh).saturating_sub(log.welded_vertices);
-    log
+    keep(mesh, |face| wanted(kinds[face]))
 }
 
 /// Keeps the faces that are wanted; returns how many are gone.

@@ -1,9 +1,11 @@
 //! Repair of anything at all.
 
-use super::super::{check, structure};
+use super::super::tests::torus;
+use super::super::{Verdict, check, structure};
 use super::*;
 use crate::geometry::Vec3;
 use proptest::prelude::*;
+use std::collections::HashMap;
 
 fn once_and_for_all(mesh: &TriangleMesh) -> Result<TriangleMesh, TestCaseError> {
     let (before, (mended, log)) = (check(mesh), repair(mesh, &Options::default()));
@@ -46,8 +48,85 @@ fn paint(at: Vec3) -> [f64; 2] {
     [at.x + 16.0 * at.y, 16.0 * at.z - at.x]
 }
 
+/// How many edges have an odd number of faces, and how many not two, of which each passes the edge in its own direction.
+fn bad_edges(mesh: &TriangleMesh) -> [usize; 2] {
+    let key = |v: u32| {
+        let Vec3 { x, y, z } = mesh.vertices[v as usize];
+        [x, y, z].map(|c| (c + 0.0).to_bits())
+    };
+    let mut edges: HashMap<_, [usize; 2]> = HashMap::new();
+    for [a, b, c] in mesh.faces.iter().map(|face| face.map(key)).filter(|[a, b, c]| a != b && b != c && c != a) {
+        for (from, to) in [(a, b), (b, c), (c, a)] {
+            edges.entry((from.min(to), from.max(to))).or_default()[usize::from(from < to)] += 1;
+        }
+    }
+    [edges.values().filter(|[a, b]| (a + b) % 2 == 1).count(), edges.values().filter(|uses| **uses != [1, 1]).count()]
+}
+
+/// Does to a mesh what scanners, converters and people do. Meshes that were closed may stay so.
+fn damage(mesh: &mut TriangleMesh, kind: u8, face: usize, other: usize) {
+    let count = mesh.faces.len();
+    let [a, b, c] = mesh.faces[face % count];
+    let [at_a, at_b] = [a, b].map(|v| mesh.vertices[v as usize]);
+    let strange = mesh.faces[other % count][0];
+    let mut add = |at: Vec3| {
+        mesh.vertices.push(at);
+        mesh.vertices.len() as u32 - 1
+    };
+    match kind {
+        0 => mesh.faces[face % count].swap(0, 1),
+        1 => mesh.faces.push([b, c, a]),
+        2 => mesh.faces.push([c, b, a]),
+        3 if count > 1 => drop(mesh.faces.swap_remove(face % count)),
+        // A vertex of its own, in the same place or near it.
+        4 => mesh.faces[face % count][0] = add(at_a),
+        5 => mesh.faces[face % count][0] = add(at_a + (at_b - at_a) * 1e-4),
+        // A vertex on an edge, with a face without area that closes the crack, or without it.
+        6 | 7 => {
+            let middle = add((at_a + at_b) * 0.5);
+            mesh.faces[face % count] = [a, middle, c];
+            mesh.faces.push([middle, b, c]);
+            if kind == 7 {
+                mesh.faces.push([a, b, middle]);
+            }
+        }
+        // An edge collapses, or strange vertices become one.
+        8 => mesh.faces.iter_mut().flatten().filter(|v| **v == a).for_each(|v| *v = b),
+        9 => mesh.faces.iter_mut().flatten().filter(|v| **v == a).for_each(|v| *v = strange),
+        // An edge becomes short, a face a needle.
+        10 => mesh.vertices[a as usize] = at_b + (at_b - at_a) * 1e-4,
+        11 => mesh.vertices[c as usize] = at_a + (at_b - at_a) * 0.25,
+        // A tetrahedron stands on a face, with the face or without it.
+        12 => mesh.faces.extend([[a, b, strange], [b, c, strange], [c, a, strange]]),
+        _ => mesh.faces.extend([[a, b, strange], [b, c, strange], [c, a, strange], [c, b, a]]),
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(2000))]
+
+    #[test]
+    fn nothing_is_worse_than_it_was(
+        size in (3u32..9, 3u32..9),
+        done in prop::collection::vec((0u8..14, 0usize..1000, 0usize..1000), 0..7),
+        weld in prop::sample::select(vec![0.0, 1e-3, 0.05]),
+    ) {
+        let mut mesh = torus(size.0, size.1);
+        for (kind, face, other) in done {
+            damage(&mut mesh, kind, face, other);
+        }
+        let options = Options { weld, ..Options::default() };
+        let (mended, log) = repair(&mesh, &options);
+        let (before, after) = (bad_edges(&mesh), bad_edges(&mended));
+        prop_assert!(after[0] <= before[0] && after[1] <= before[1], "{before:?} {after:?} {log:?}");
+        let (was, is) = (structure(&mesh), structure(&mended));
+        prop_assert!(is.is_solid() || !was.is_solid(), "{was:?} {log:?}");
+        prop_assert!(is.verdict() == Verdict::Solid || was.verdict() != Verdict::Solid, "{was:?} {is:?} {log:?}");
+        prop_assert!(!is.components.is_empty() || was.components.is_empty());
+        prop_assert!(!log.is_empty() || mended == mesh, "{log:?}");
+        let (again, nothing) = repair(&mended, &options);
+        prop_assert!(nothing.is_empty() && again == mended, "{log:?} {nothing:?}");
+    }
 
     /// Vertex 12 is not there.
     #[test]
