@@ -55,6 +55,52 @@ def test_meshes_are_arrays(tmp_path: Path) -> None:
     assert eval(repr(scene), dict(vars(snell))) == scene
 
 
+def test_large_meshes_go_beside_a_saved_scene(tmp_path: Path) -> None:
+    draw = np.random.default_rng(0)
+    vertices = draw.uniform(-1, 1, (3000, 3))
+    scene = small(mesh=[Mesh(vertices, np.arange(4500).reshape(-1, 3) % 3000, "red")])
+    for name in ("large.toml", "large.json"):
+        scene.save(tmp_path / name)
+        assert (tmp_path / name).stat().st_size < 4000
+        assert scene.render().array.tobytes() == film(str(tmp_path / name), tmp_path).tobytes()
+    assert (tmp_path / "large-mesh-1.ply").is_file()
+    (tmp_path / "other-mesh-1.ply").write_text("mine")
+    with pytest.raises(snell.SceneError, match="is not from Snell"):
+        scene.save(tmp_path / "other.toml")
+    assert not (tmp_path / "other.toml").exists()
+
+
+def test_an_infinite_abbe_number_is_no_dispersion() -> None:
+    def picture(abbe: float | None) -> bytes:
+        material = {"glass": Material(ko=0, eta=1.5, abbe=abbe), "red": Material(kd=(1, 0, 0))}
+        scene = small(material=material, sphere=[Sphere((0, 0, 0), 1, "glass")], settings=Render("whitted", (16, 12)))
+        return scene.render().array.tobytes()
+
+    assert picture(float("inf")) == picture(None) != picture(30.0)
+
+
+def test_what_is_missing_is_named_and_not_what_is_changed() -> None:
+    scene = small(settings=Render("lecture"))
+    with pytest.raises(snell.SceneError) as caught:
+        scene.with_("camera.fov", 30)
+    assert "size" in str(caught.value) and "camera.fov" not in str(caught.value)
+    with pytest.raises(snell.SceneError, match="fow"):
+        small().with_("camera.fow", 30)
+
+
+def test_a_glass_says_where_it_is_known() -> None:
+    material = {"glass": Material(ko=0, glass="germanium"), "red": Material()}
+    scene = small(material=material, sphere=[Sphere((0, 0, 0), 1, "glass")], settings=Render("whitted", (4, 4)))
+    with pytest.raises(snell.SceneError, match="`germanium` is known from 2000 to 14000 nm"):
+        scene.render()
+
+
+def test_a_black_picture_says_why() -> None:
+    scene = small(light=[], sphere=[Sphere((0, 0, 0), 1, "red")])
+    with pytest.warns(snell.SnellWarning, match="nothing sends out light"):
+        scene.render()
+
+
 def test_models_are_found_from_where_a_scene_is_saved(tmp_path: Path) -> None:
     (tmp_path / "a").mkdir()
     (tmp_path / "b").mkdir()

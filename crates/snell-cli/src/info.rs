@@ -15,6 +15,7 @@ use snell_formats::load::Loaded;
 use snell_formats::picture::{self, Picture};
 use snell_formats::{LoadOptions, Report};
 use std::fmt::Write;
+use std::io::IsTerminal;
 use std::path::Path;
 
 pub fn run(args: &InfoArgs) -> Outcome {
@@ -28,12 +29,17 @@ pub fn run(args: &InfoArgs) -> Outcome {
     }
     let loaded = input::scene(&args.file, &LoadOptions::from(&args.reading))?;
     if args.scene {
-        return say::print(&loaded.source.text);
+        return print_text(&loaded.source.text);
     }
     let world = loaded.world().or_fail(SCENE)?;
     say::print(&plain(&about_scene(&loaded, &world)))?;
     say::reports(&loaded.warnings_with(&world));
     Ok(())
+}
+
+/// As it is into a file, without what would steer a terminal onto one.
+fn print_text(text: &str) -> Outcome {
+    if std::io::stdout().is_terminal() { say::print(&plain(text)) } else { say::print(text) }
 }
 
 fn about_picture(picture: &Picture, args: &InfoArgs) -> Outcome {
@@ -49,7 +55,7 @@ fn about_picture(picture: &Picture, args: &InfoArgs) -> Outcome {
         return say::print(&text);
     };
     if args.scene {
-        return say::print(&recipe.text);
+        return print_text(&recipe.text);
     }
     let _ = writeln!(text, "made by      Snell {}", recipe.snell);
     let _ = writeln!(text, "scene        {} (its text: --scene)", recipe.name);

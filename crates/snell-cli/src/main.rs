@@ -56,7 +56,7 @@ fn answer_with(answer: &clap::Error) -> Outcome {
     let text = again.as_ref().unwrap_or(answer).render();
     let styled = |stream: &dyn Fn() -> bool| if stream() { text.ansi().to_string() } else { text.to_string() };
     if answer.use_stderr() {
-        say::tell(styled(&|| say::colored(&std::io::stderr())).trim_end());
+        say::tell_styled(styled(&|| say::colored(&std::io::stderr())).trim_end());
         return Err(Failure { code: USAGE, reports: Vec::new() });
     }
     say::print(&styled(&|| say::colored(&std::io::stdout())))

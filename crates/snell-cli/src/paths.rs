@@ -98,7 +98,7 @@ fn way(text: &str, world: &World) -> Result<Way, Failure> {
 
 fn say(args: &RenderArgs, text: &str) {
     if !args.quiet && args.progress == ProgressKind::Auto {
-        tell(&crate::excerpt::plain(text));
+        tell(text);
     }
 }
 

@@ -1,6 +1,7 @@
 //! Showing what goes on and how far it is: a bar for people, lines of JSON for programs.
 
 use crate::args::ProgressKind;
+use crate::excerpt::plain;
 use crate::say::tell;
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::json;
@@ -36,7 +37,7 @@ impl Reporter {
                 if let Ok(style) = ProgressStyle::with_template(&template) {
                     bar.set_style(style.progress_chars("━╸─"));
                 }
-                bar.set_prefix(what.to_owned());
+                bar.set_prefix(plain(what));
                 Self::Bar(bar)
             }
         }
@@ -98,7 +99,7 @@ impl Phase {
             ProgressKind::Auto if quiet || !std::io::stderr().is_terminal() => {}
             ProgressKind::Auto => {
                 let (over, is_over) = channel::<()>();
-                let text = format!("{what} {}", crate::excerpt::plain(name));
+                let text = format!("{what} {}", plain(name));
                 let draw = move || {
                     let wait = |time| is_over.recv_timeout(time) == Err(RecvTimeoutError::Timeout);
                     if wait(BAR_DELAY) {

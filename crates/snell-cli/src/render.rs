@@ -1,7 +1,6 @@
 //! `snell render`.
 
 use crate::args::{ProgressKind, RenderArgs};
-use crate::excerpt::plain;
 use crate::input::what_is;
 use crate::output::{self, beside, is_standard, refuse_inputs};
 use crate::paths;
@@ -163,8 +162,8 @@ fn keep_all_inputs(args: &RenderArgs, names: &[String], outputs: &[PathBuf]) -> 
     if there.is_empty() {
         return Ok(());
     }
-    for name in names.iter().filter(|name| *name != output::STANDARD) {
-        // What cannot be read is told when it is its turn.
+    // A pipe can be read once, and what cannot be read is told when it is its turn.
+    for name in names.iter().filter(|name| !Path::new(name).exists() || Path::new(name).is_file()) {
         let Ok((_, loaded)) = Recipe::of(name, &args.reading, &Changes::from(args)) else { continue };
         there.iter().try_for_each(|output| refuse_inputs(output, loaded.files()))?;
     }
@@ -393,19 +392,19 @@ fn summary(
     }
     let total = rays.total() as f64;
     let state = hash.map_or("stopped before it was finished".to_owned(), |h| format!("film {}", short_hash(h)));
-    tell(&plain(&format!(
+    tell(&format!(
         "{}: {} x {}, {} rays in {seconds:.2} s ({} rays/s), {state}",
         output::shown(output),
         film.crop.width,
         film.crop.height,
         short(total),
         short(total / seconds.max(1e-9)),
-    )));
+    ));
     if lost.rays > 0 && world.render.max_depth == 0 {
         tell("  depth 0: mirrors and glass send no rays on");
     }
     for warning in odd {
-        tell(&plain(&format!("  {warning}")));
+        tell(&format!("  {warning}"));
     }
 }
 

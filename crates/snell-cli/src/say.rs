@@ -103,11 +103,16 @@ pub fn report(report: &Report) {
     if handler.render_report(&mut text, &Excerpt::of(report)).is_err() {
         text = plain(&report.to_string());
     }
-    tell(text.trim());
+    tell_styled(text.trim());
 }
 
-/// Writes a line to stderr. Where that cannot be written to, nobody is told, and the work goes on.
+/// Writes a line to stderr, without characters that steer a terminal.
 pub fn tell(line: &str) {
+    tell_styled(&plain(line));
+}
+
+/// The same with our own colours in it. Where nothing can be written, nobody is told, and the work goes on.
+pub fn tell_styled(line: &str) {
     let _ = writeln!(std::io::stderr().lock(), "{line}");
 }
 

@@ -1,10 +1,10 @@
 //! `--set` and `--without`: the same pixel, before and after, branch by branch.
 
-use super::{Asked, ask, colored, known_object};
+use super::{Asked, ask, colored, known_object, print};
 use crate::args::ExplainArgs;
 use crate::excerpt::plain;
 use crate::recipe::Changes;
-use crate::say::{self, OrFail, Outcome, SCENE, tell};
+use crate::say::{OrFail, Outcome, SCENE, tell};
 use snell::explain::text::{head, mean, numbers, swatch};
 use snell::explain::{Path, by_path};
 use snell::film::Rgb;
@@ -35,18 +35,17 @@ pub fn run(args: &ExplainArgs, changes: &Changes, pixel: [u32; 2]) -> Outcome {
         Err(failure) => {
             let why = failure.reports.iter().find(|report| report.warning.is_none());
             let why = why.map_or(String::new(), |report| format!(": {report}"));
-            tell(&plain(&format!("note: only what is asked for is shown, as without it there is no such pixel{why}")));
-            return say::print(&format!(
-                "{}\n{made}:\n{shown}\n{}",
-                head(&after, colored()),
-                table(&[], &paths(&asked, x, y))
-            ));
+            tell(&format!("note: only what is asked for is shown, as without it there is no such pixel{why}"));
+            return print(
+                &asked,
+                &format!("{}\n{made}:\n{shown}\n{}", head(&after, colored()), table(&[], &paths(&asked, x, y))),
+            );
         }
     };
     let (before, original) = original;
     let text = format!("{}\n{made}:\n{shown}\n", head(&before, colored()));
     let [u, v] = before.pixel;
-    say::print(&(text + &table(&paths(&original, u, v), &paths(&asked, x, y))))
+    print(&asked, &(text + &table(&paths(&original, u, v), &paths(&asked, x, y))))
 }
 
 /// Takes an object out of a scene.

@@ -54,7 +54,7 @@ pub fn run(asked: &Asked, object: &str, args: &ExplainArgs) -> Outcome {
         film.finished.fill(true);
         let encoding = Encoding { transfer: Transfer::Linear, rounding: Rounding::Round };
         picture::write(file, format, &film, encoding, None).or_fail(FAILED)?;
-        tell(&plain(&file.display().to_string()));
+        tell(&file.display().to_string());
     }
     say::print(&plain(&text))
 }

@@ -12,6 +12,7 @@ use crate::recipe::{Changes, Recipe};
 use crate::say::{self, Failure, OrFail, Outcome, SCENE, USAGE, tell};
 use snell::explain::text::{self, Style};
 use snell::explain::{Explanation, Names, explain};
+use snell::scene::WarningCode;
 use snell::world::World;
 use snell_formats::Report;
 use snell_formats::figure::figure;
@@ -93,7 +94,7 @@ pub fn run(args: &ExplainArgs) -> Outcome {
     }
     let explanation = asked.pixel(pixel)?;
     if let Some(light) = &args.light {
-        return say::print(&light::text(&explanation, light));
+        return print(&asked, &light::text(&explanation, light));
     }
     if let Some(file) = &args.html {
         return write(file, &page(&explanation, &asked.names(), VIEWER));
@@ -107,7 +108,7 @@ pub fn run(args: &ExplainArgs) -> Outcome {
     let default = Style::default();
     let style =
         Style { top: args.top.unwrap_or(default.top), depth: args.depth.unwrap_or(default.depth), colored: colored() };
-    say::print(&text::text(&explanation, style))
+    print(&asked, &text::text(&explanation, style))
 }
 
 /// Reads what is explained, of a scene or of a picture that knows its scene.
@@ -131,6 +132,12 @@ fn ask(args: &ExplainArgs, changes: &Changes) -> Result<Asked, Failure> {
 /// May stdout be coloured?
 fn colored() -> bool {
     say::colored(&std::io::stdout())
+}
+
+/// Prints an explanation. Where names hold characters that steer a terminal, its own colours go with them.
+fn print(asked: &Asked, text: &str) -> Outcome {
+    let odd = asked.world.warnings.iter().any(|warning| warning.code == WarningCode::UnprintableName);
+    if odd || !colored() { say::print(&plain(text)) } else { say::print(text) }
 }
 
 /// Fails with the names that there are, if a scene has no such object.
@@ -165,7 +172,7 @@ fn json(explanation: &Explanation) -> String {
 fn write(file: &Path, text: &str) -> Outcome {
     write_text(file, text)?;
     if !output::is_standard(file) {
-        tell(&plain(&file.display().to_string()));
+        tell(&file.display().to_string());
     }
     Ok(())
 }
