@@ -8,7 +8,7 @@ use crate::trace::{PixelTrace, Recorder, Statistics, Tracer};
 use crate::world::World;
 use std::fmt;
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 /// Edge of a tile in pixels, if nobody says.
 pub const TILE_SIZE: u32 = 32;
@@ -111,13 +111,16 @@ pub fn render_into(film: &mut Film, world: &World, options: &Options<'_>) -> Res
     // A tile fits into an array index, and so does a row of tiles, as the film does.
     let rows = usize::try_from(u64::from(options.tile_size.max(1)) * u64::from(crop.width)).unwrap_or(usize::MAX);
     let bands = film.pixels.chunks_mut(rows).zip(film.finished.chunks_mut(rows));
+    let bands: Vec<Mutex<Band<'_>>> = bands.map(|(pixels, finished)| Mutex::new(Band { pixels, finished })).collect();
+    let columns = u64::from(crop.width).div_ceil(u64::from(options.tile_size.max(1)));
     let shared = Shared {
         world,
         options,
         crop,
-        next_band: AtomicUsize::new(0),
+        order: Spread::new(columns * bands.len() as u64),
+        taken: AtomicU64::new(0),
         rays: AtomicU64::new(0),
-        bands: bands.map(|(pixels, finished)| Band::new(pixels, finished)).collect(),
+        bands,
         statistics: Mutex::new(Statistics::default()),
         pixels: AtomicU64::new(0),
     };
@@ -158,18 +161,30 @@ impl<'a> PixelTracer<'a> {
     }
 }
 
-/// Every number below `count` once, each far from the last ones: sky and glass take turns, so that the pixels that are finished
-/// tell how long the others will take. Steps of the golden ratio leave no large gap (Weyl 1916).
-fn nth(turn: u64, count: u64) -> u64 {
-    let gcd = |mut a: u64, mut b: u64| {
-        while b != 0 {
-            (a, b) = (b, a % b);
-        }
-        a
-    };
-    let golden = (count as f64 * 0.618_033_988_749_895) as u64;
-    let step = (golden.max(1)..=count).find(|&step| gcd(step, count) == 1).unwrap_or(1);
-    turn * step % count
+/// An order in which every number below `count` comes once, each far from the last ones: steps of the golden ratio leave no large
+/// gap (Weyl 1916).
+#[derive(Clone, Copy)]
+struct Spread {
+    count: u64,
+    step: u64,
+}
+
+impl Spread {
+    fn new(count: u64) -> Self {
+        let gcd = |mut a: u64, mut b: u64| {
+            while b != 0 {
+                (a, b) = (b, a % b);
+            }
+            a
+        };
+        let golden = (count as f64 * 0.618_033_988_749_895) as u64;
+        let step = (golden.max(1)..=count).find(|&step| gcd(step, count) == 1).unwrap_or(1);
+        Self { count, step }
+    }
+
+    fn nth(self, turn: u64) -> u64 {
+        (u128::from(turn) * u128::from(self.step) % u128::from(self.count)) as u64
+    }
 }
 
 /// What one thread does.
@@ -183,45 +198,31 @@ impl Kernel for Worker<'_, '_> {
     }
 }
 
-/// One row of tiles, and its part of the film.
-///
-/// A thread takes a band of its own, so that the memory it touches is near; when no band is left, it helps the others.
-/// Neighbours in time, bands and tiles, are far from each other in the picture ([`nth`]).
+/// One row of tiles: its part of the film.
 struct Band<'a> {
-    /// How many of its tiles have been taken.
-    taken: AtomicU64,
-    film: Mutex<BandOfFilm<'a>>,
-}
-
-struct BandOfFilm<'a> {
     pixels: &'a mut [Rgb],
     finished: &'a mut [bool],
-}
-
-impl<'a> Band<'a> {
-    fn new(pixels: &'a mut [Rgb], finished: &'a mut [bool]) -> Self {
-        Self { taken: AtomicU64::new(0), film: Mutex::new(BandOfFilm { pixels, finished }) }
-    }
 }
 
 struct Shared<'a> {
     world: &'a World,
     options: &'a Options<'a>,
     crop: Crop,
-    /// The first band that nobody has taken.
-    next_band: AtomicUsize,
+    /// Sky and glass take turns, so that the pixels that are finished tell how long the others will take.
+    order: Spread,
+    /// How many tiles have been taken.
+    taken: AtomicU64,
     rays: AtomicU64,
     pixels: AtomicU64,
     /// From top to bottom.
-    bands: Vec<Band<'a>>,
+    bands: Vec<Mutex<Band<'a>>>,
     statistics: Mutex<Statistics>,
 }
 
 impl Shared<'_> {
     fn work(&self) {
         // More threads than tiles have nothing to do.
-        let tiles = self.columns().saturating_mul(self.bands.len() as u64);
-        let most = usize::try_from(tiles).unwrap_or(usize::MAX);
+        let most = usize::try_from(self.order.count).unwrap_or(usize::MAX);
         threads::run(self.options.threads.min(most), || dispatch(self.options.lanes, Worker(self)));
     }
 
@@ -237,39 +238,35 @@ impl Shared<'_> {
     #[inline(always)]
     fn worker<L: Lanes>(&self) {
         let mut tracer = Tracer::<L, ()>::new(self.world, self.options.cancel, ());
-        let count = self.bands.len();
-        let own = std::iter::from_fn(|| Some(self.next_band.fetch_add(1, Ordering::Relaxed)));
-        let own = own.take_while(|&turn| turn < count).map(|turn| nth(turn as u64, count as u64) as usize);
-        for band in own.chain(0..count) {
-            while let Some(tile) = self.take_tile(band) {
-                let rays_before = tracer.statistics.rays.total();
-                let Some(radiance) = tracer.trace(&tile) else { break };
-                self.store(band, &tile, radiance);
-                let pixels = u64::from(tile.width) * u64::from(tile.height);
-                self.report(pixels, tracer.statistics.rays.total() - rays_before);
-            }
+        while let Some((band, tile)) = self.take_tile() {
+            let rays_before = tracer.statistics.rays.total();
+            let Some(radiance) = tracer.trace(&tile) else { break };
+            self.store(band, &tile, radiance);
+            let pixels = u64::from(tile.width) * u64::from(tile.height);
+            self.report(pixels, tracer.statistics.rays.total() - rays_before);
         }
         if let Ok(mut statistics) = self.statistics.lock() {
             statistics.merge(&tracer.statistics);
         }
     }
 
-    /// The next tile of a band, if there is one and nobody has cancelled.
-    fn take_tile(&self, band: usize) -> Option<Crop> {
-        let turn = self.bands[band].taken.fetch_add(1, Ordering::Relaxed);
-        if turn >= self.columns() || self.options.cancel.is_some_and(|c| c.load(Ordering::Relaxed)) {
+    /// The next tile and its band, if there is one and nobody has cancelled.
+    fn take_tile(&self) -> Option<(usize, Crop)> {
+        let turn = self.taken.fetch_add(1, Ordering::Relaxed);
+        if turn >= self.order.count || self.options.cancel.is_some_and(|c| c.load(Ordering::Relaxed)) {
             return None;
         }
-        let (size, crop) = (self.tile_size(), &self.crop);
-        let (left, top) = (nth(turn, self.columns()) * size, band as u64 * size);
+        let (size, crop, tile) = (self.tile_size(), &self.crop, self.order.nth(turn));
+        let (band, column) = (tile / self.columns(), tile % self.columns());
+        let (left, top) = (column * size, band * size);
         let width = size.min(u64::from(crop.width) - left) as u32;
         let height = size.min(u64::from(crop.height) - top) as u32;
-        Some(Crop { x: crop.x + left as u32, y: crop.y + top as u32, width, height })
+        Some((band as usize, Crop { x: crop.x + left as u32, y: crop.y + top as u32, width, height }))
     }
 
     /// Stores the pixels of a tile, row by row.
     fn store(&self, band: usize, tile: &Crop, radiance: &[Rgb]) {
-        let Ok(mut film) = self.bands[band].film.lock() else { return };
+        let Ok(mut film) = self.bands[band].lock() else { return };
         let (left, width) = ((tile.x - self.crop.x) as usize, tile.width as usize);
         for (row, colors) in radiance.chunks(width).enumerate() {
             let start = row * self.crop.width as usize + left;
@@ -290,12 +287,13 @@ impl Shared<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::nth;
+    use super::Spread;
 
     #[test]
     fn every_number_has_its_turn_and_neighbours_in_time_are_far_apart() {
         for count in 1..300 {
-            let order: Vec<u64> = (0..count).map(|turn| nth(turn, count)).collect();
+            let spread = Spread::new(count);
+            let order: Vec<u64> = (0..count).map(|turn| spread.nth(turn)).collect();
             let mut sorted = order.clone();
             sorted.sort_unstable();
             assert_eq!(sorted, (0..count).collect::<Vec<_>>());
