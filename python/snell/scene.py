@@ -27,7 +27,7 @@ _LISTS: Mapping[str, type[Value]] = {
 _TABLES: Mapping[str, type[Value]] = {"render": Render, "camera": Camera, "sky": Sky}
 _NAMED: Mapping[str, type[Value]] = {"material": Material, "texture": Texture}
 _MOST_THREADS = 4096
-_LOST_LIGHT = "W202 lost-light"
+_REMARKS = ("W202 lost-light", "W203 black-picture")  # told by the picture, which may be meant so
 
 
 @dataclass(eq=False, repr=False, kw_only=True)
@@ -312,7 +312,7 @@ class Scene(Value):
         with watcher(progress, self.name) as watch:
             picture = Picture(compiled.render(int(threads), watch), self.name)
         # Lost light is nothing odd: every hall of mirrors has some.
-        found = [text for code, text in picture._native.warnings() if code != _LOST_LIGHT]
+        found = [text for code, text in picture._native.warnings() if code not in _REMARKS]
         _warn([(None, text, None) for text in found], known)
         return picture
 

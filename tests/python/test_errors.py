@@ -99,7 +99,7 @@ def test_pictures_say_what_they_have_not(tmp_path: Any) -> None:
         picture.save(tmp_path / "a.pgn")
     with pytest.raises(snell.PictureError, match="shape"):
         picture.diff(np.zeros((1, 1, 3)))
-    with pytest.raises(SceneError, match="objects:"):
+    with pytest.raises(SceneError, match="Known here: none"):
         small().find("nobody")
 
 

@@ -73,7 +73,13 @@ def test_large_meshes_go_beside_a_saved_scene(tmp_path: Path) -> None:
 def test_an_infinite_abbe_number_is_no_dispersion() -> None:
     def picture(abbe: float | None) -> bytes:
         material = {"glass": Material(ko=0, eta=1.5, abbe=abbe), "red": Material(kd=(1, 0, 0))}
-        scene = small(material=material, sphere=[Sphere((0, 0, 0), 1, "glass")], settings=Render("whitted", (16, 12)))
+        scene = small(
+            material=material,
+            sphere=[Sphere((0, 0, 0), 1, "glass")],
+            plane=[Plane((2, 0, -3), (0, 0, 1), (3, 9), "red")],
+            settings=Render("whitted", (16, 12)),
+            background=(0.2, 0.9, 0.4),
+        )
         return scene.render().array.tobytes()
 
     assert picture(float("inf")) == picture(None) != picture(30.0)
@@ -97,8 +103,8 @@ def test_a_glass_says_where_it_is_known() -> None:
 
 def test_a_black_picture_says_why() -> None:
     scene = small(light=[], sphere=[Sphere((0, 0, 0), 1, "red")])
-    with pytest.warns(snell.SnellWarning, match="nothing sends out light"):
-        scene.render()
+    remark = scene.render().remarks[-1]
+    assert remark.startswith("W203") and "nothing sends out light" in remark
 
 
 def test_models_are_found_from_where_a_scene_is_saved(tmp_path: Path) -> None:

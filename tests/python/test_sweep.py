@@ -35,7 +35,7 @@ def test_values_go_together(tmp_path: Path) -> None:
     scene = snell.scenes["lecture/default"]
     with pytest.raises(snell.SceneError, match=r"eta has 2, eta_outside has 1"):
         snell.sweep(scene, {"material.glass.eta": [1, 2], "eta_outside": [1]}, tmp_path)
-    with pytest.raises(snell.SceneError, match="known here: glass"):
+    with pytest.raises(snell.SceneError, match="Known here: glass"):
         snell.sweep(scene, {"material.gals.eta": [1]}, tmp_path)
 
 
@@ -204,7 +204,7 @@ def test_what_is_no_sweep_is_said(tmp_path: Path) -> None:
         snell.sweep(scene, {}, tmp_path / "frames", colour=1)
     with pytest.raises(snell.SceneError, match="width: expected a number, a text or a list"):
         snell.sweep(scene, {}, tmp_path / "frames", width=object())
-    with pytest.raises(snell.SceneError, match="known here: glass"):
+    with pytest.raises(snell.SceneError, match="Known here: glass"):
         snell.sweep(scene, {"material.gals.eta": [1]}, tmp_path / "frames")
     assert not (tmp_path / "frames").exists()
     with pytest.raises(snell.PictureError, match="is no folder for frames"):

@@ -77,7 +77,7 @@ pub struct RenderArgs {
     #[arg(long, value_name = "PICTURE", conflicts_with_all = ["scenes", "dialect"])]
     pub from: Option<PathBuf>,
 
-    /// Width and height in pixels; another shape than the scene's shows more, `--stretch` does not
+    /// Width and height in pixels; a shape other than the scene's shows more of it, unless `--stretch` is given
     #[arg(long, value_name = "WxH", value_parser = size, help_heading = "Picture")]
     pub size: Option<[u32; 2]>,
     /// With --size: keep the bounds, even if pixels are no longer square
@@ -270,7 +270,7 @@ pub struct ScenesArgs {
     pub force: bool,
 }
 
-/// Turn a driver file into a scene file (or TOML into JSON and back)
+/// Turn a driver or NFF file into a scene file (or TOML into JSON and back)
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
@@ -342,7 +342,7 @@ pub struct CheckArgs {
     /// Overwrite the file if there is one
     #[arg(long, requires = "output")]
     pub force: bool,
-    /// Vertices of open edges so near to each other become one, as a share of the model's diagonal, at most 0.1; 0: only
+    /// Join vertices of open edges that are no farther apart than this share of the model's diagonal, at most 0.1; 0: only
     /// equal ones
     #[arg(long, value_name = "SHARE", default_value_t = 0.0, value_parser = share, requires = "repair")]
     pub weld: f64,

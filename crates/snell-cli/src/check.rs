@@ -25,7 +25,7 @@ pub fn run(args: &CheckArgs) -> Outcome {
         Given::Model(_) => one_model(args, path),
         _ if named => one_model(args, path),
         Given::Foreign(what, help) => {
-            let report = Report::error(format!("`{}` is {what}, which is not read", args.model));
+            let report = Report::error(format!("`{}` is {what}, which Snell does not read", args.model));
             Err(Failure::new(SCENE, report.help(help)))
         }
         Given::Picture(what) => {
@@ -77,7 +77,7 @@ fn all_meshes(args: &CheckArgs) -> Outcome {
     loaded.world().or_fail(SCENE)?;
     let (mut texts, mut all) = (Vec::new(), Vec::new());
     let mut json = Vec::new();
-    for (number, mesh) in loaded.scene.meshes.iter().enumerate() {
+    for (number, mesh) in (1..).zip(&loaded.scene.meshes) {
         let own = || {
             let vertices = mesh.vertices.iter().map(|&v| v.into()).collect();
             Arc::new(TriangleMesh { vertices, faces: mesh.faces.clone(), ..TriangleMesh::default() })

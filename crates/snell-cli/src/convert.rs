@@ -51,14 +51,14 @@ pub fn run(args: &ConvertArgs) -> Outcome {
     };
     // The scene itself may be rewritten by --force, but nothing that it names.
     let read: Vec<&Path> = loaded.files().filter(|path| !args.force || Some(*path) != loaded.path.as_deref()).collect();
+    refuse_inputs(output, read.iter().copied())?;
     let may_write = |path: &Path| {
-        refuse_inputs(path, read.iter().copied()).map_err(|mut failure| failure.reports.remove(0))?;
         refuse_existing(path, args.force)?;
         disk::check_writable(path)
     };
     let written = scene_file::save(loaded.scene.clone(), output, syntax, &heading, may_write).or_fail(FAILED)?;
-    for beside in &written[..written.len() - 1] {
-        say::tell(&beside.display().to_string());
+    for file in &written {
+        say::tell(&file.display().to_string());
     }
     Ok(())
 }

@@ -22,7 +22,7 @@ pub fn run(args: &InfoArgs) -> Outcome {
     match what_is(&args.file) {
         Given::Picture(_) => return about_picture(&picture::read(Path::new(&args.file)).or_fail(FAILED)?, args),
         Given::Foreign(what, help) => {
-            let report = Report::error(format!("`{}` is {what}, which is not read", args.file));
+            let report = Report::error(format!("`{}` is {what}, which Snell does not read", args.file));
             return Err(Failure::new(SCENE, report.help(help)));
         }
         _ => {}
@@ -113,7 +113,10 @@ fn about_scene(loaded: &Loaded, world: &World) -> String {
             _ => String::new(),
         };
         let title = light.name.clone().unwrap_or_else(|| format!("light {}", i + 1));
-        line("light", format!("{title}: {place}, {:?}", light.color.to_array()));
+        let cone = light
+            .target
+            .map_or(String::new(), |target| format!(" towards {target:?}, cone {}", light.cone.unwrap_or_default()));
+        line("light", format!("{title}: {place}{cone}, {:?}", light.color.to_array()));
     }
     for (name, m) in materials {
         let [ka, kd, ks, kr, ko] = [m.ka, m.kd, m.ks, m.kr, m.ko]

@@ -28,7 +28,7 @@ pub fn refuse_inputs<'a>(output: &Path, inputs: impl IntoIterator<Item = &'a Pat
             let also = if input == output { String::new() } else { format!(", as `{}`", input.display()) };
             let report =
                 Report::error(format!("`{}` was read for this{also}: it is not written over", output.display()));
-            Err(Failure::new(USAGE, report.help("give what is written another name, with -o or its own option")))
+            Err(Failure::new(USAGE, report.help("name another file for the output")))
         }
     }
 }

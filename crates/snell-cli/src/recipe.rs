@@ -271,7 +271,7 @@ impl Recipe {
                 format!("it was {} with SHA-256 {}", m.path.display(), m.sha256)
             });
             let message = format!("the model `{path}` has changed since the picture was made");
-            let help = format!("{was}; show where that is with --search DIR");
+            let help = format!("{was}; if it is elsewhere now, name its folder with --search DIR");
             return Err(Failure::new(SCENE, Report::error(message).help(help)));
         }
         Ok(loaded)

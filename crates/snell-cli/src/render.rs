@@ -131,7 +131,13 @@ fn in_folder(folder: &Path, args: &RenderArgs, names: &[String]) -> Result<Vec<P
     let mut outputs = Vec::new();
     for name in names {
         let again = if args.from.is_some() { "-again" } else { "" };
-        let output = folder.join(format!("{}{again}.{}", stem(name), args.format));
+        // A part of the light is no picture of the scene, and layers are EXR.
+        let (part, ending) = match (&args.only, args.paths) {
+            (Some(_), _) => ("-only", &*args.format),
+            (None, Some(_)) => ("-paths", "exr"),
+            (None, None) => ("", &*args.format),
+        };
+        let output = folder.join(format!("{}{part}{again}.{ending}", stem(name)));
         if let Some(other) = taken.insert(output.clone(), name) {
             let message = format!("`{other}` and `{name}` would both be written to `{}`", output.display());
             return Err(Failure::new(USAGE, Report::error(message).help("render them with two commands")));
@@ -193,7 +199,7 @@ fn read(name: &str, args: &RenderArgs) -> Result<(Recipe, Loaded), Failure> {
 fn refuse_picture(name: &str) -> Outcome {
     let Given::Picture(what) = what_is(name) else { return Ok(()) };
     let report = Report::error(format!("`{name}` is {what}, not a scene"));
-    let help = format!("to make it again, with changes or without: snell render --from {name}");
+    let help = format!("if Snell made it, this makes it again, with changes or without: snell render --from {name}");
     Err(Failure::new(SCENE, report.help(help)))
 }
 

@@ -46,9 +46,11 @@ pub fn find(name: &str) -> Result<Source, Report> {
     if let Some((name, text)) = SCENES.iter().find(|(n, _)| *n == name) {
         Ok(Source::new(*name, *text))
     } else {
-        let near = nearest(name, SCENES.iter().map(|(n, _)| *n));
+        // `ball` is short for `gallery/ball`.
+        let end = SCENES.iter().map(|(n, _)| *n).find(|n| n.rsplit('/').next() == Some(name));
+        let near = end.or_else(|| nearest(name, SCENES.iter().map(|(n, _)| *n)));
         let help = near.map_or_else(String::new, |n| format!("did you mean `{n}`? "));
-        let message = format!("there is no file and no built-in scene `{name}`");
+        let message = format!("no built-in scene is called `{name}`");
         Err(Report::error(message).help(help + "`snell scenes` lists the built-in ones"))
     }
 }

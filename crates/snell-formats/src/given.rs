@@ -101,11 +101,13 @@ impl Given {
             Self::Picture(what) => (
                 what,
                 format!(
-                    "`snell info {shown}` says how it was made, and `snell render --from {shown}` makes it again, if it was Snell"
+                    "`snell info {shown}` says how it was made, and `snell render --from {shown}` makes it again, if Snell made it"
                 ),
             ),
             Self::Foreign(what, help) => (what, help.to_owned()),
-            Self::Bytes => ("no text", "scenes are text files: TOML, JSON, drivers of the course, or NFF".to_owned()),
+            Self::Bytes => {
+                ("binary data", "scenes are text files: TOML, JSON, drivers of the course, or NFF".to_owned())
+            }
         };
         let report = Report::error(format!("`{shown}` is {what}, not a scene"));
         Some(if help.is_empty() { report } else { report.help(help) })
@@ -133,7 +135,7 @@ mod tests {
             ("SPOT.OBJ", b"v 0 0 0\n", "OBJ model, not a scene"),
             ("a", b"ply\nformat ascii 1.0\n", "a PLY model"),
             ("a.glb", b"glTF\x02\0\0\0", "a glTF model"),
-            ("a.bin", &[0, 1, 2, 200], "is no text"),
+            ("a.bin", &[0, 1, 2, 200], "is binary data"),
             ("a", b"P6 1 1 255 \0\0\0", "a PPM picture"),
             ("a.xml", b"<scene/>", "an XML file"),
         ] {

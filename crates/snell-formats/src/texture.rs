@@ -195,7 +195,7 @@ mod tests {
         };
         let (message, help) = error("wall.jpg", b"");
         assert!(
-            message.contains("no ending of a picture") && help.contains("magick") && help.contains("wall.png"),
+            message.contains("not named like a picture") && help.contains("magick") && help.contains("wall.png"),
             "{help}"
         );
         assert!(error("cut.ppm", b"P6 2 2 255 1").1.contains("save it again"));

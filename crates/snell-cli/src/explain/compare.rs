@@ -35,7 +35,7 @@ pub fn run(args: &ExplainArgs, changes: &Changes, pixel: [u32; 2]) -> Outcome {
         Err(failure) => {
             let why = failure.reports.iter().find(|report| report.warning.is_none());
             let why = why.map_or(String::new(), |report| format!(": {report}"));
-            tell(&format!("note: only what is asked for is shown, as without it there is no such pixel{why}"));
+            tell(&format!("note: only the pixel after the change is shown; without the change there is none{why}"));
             return print(
                 &asked,
                 &format!("{}\n{made}:\n{shown}\n{}", head(&after, colored()), table(&[], &paths(&asked, x, y))),

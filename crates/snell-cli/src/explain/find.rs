@@ -43,7 +43,7 @@ pub fn run(asked: &Asked, object: &str, args: &ExplainArgs) -> Outcome {
         let _ = writeln!(text, "          … and {} more ways", found.paths.len() - LISTED);
     }
     let pixels = found.mask.iter().filter(|share| **share > 0.0).count();
-    let _ = writeln!(text, "{pixels:9} px  together: a pixel counts once for each way that it has");
+    let _ = writeln!(text, "{pixels:9} px  together; above, a pixel counts once for each of its ways");
     if let Some((file, format)) = mask {
         let [width, height] = world.camera.size;
         let mut film = Film::new([width, height], Crop { x: 0, y: 0, width, height })

@@ -32,7 +32,7 @@ pub fn text(explanation: &Explanation, name: &str) -> String {
                     let [d, h] = [light.diffuse, light.highlight].map(numbers);
                     writeln!(
                         text,
-                        "{:.1} % of it arrive{by}: diffuse {d}, highlight {h}",
+                        "{:.1} % of it arrives{by}: diffuse {d}, highlight {h}",
                         100.0 * mean(light.transmittance)
                     )
                 }
@@ -40,7 +40,7 @@ pub fn text(explanation: &Explanation, name: &str) -> String {
         }
     }
     if !asks {
-        text.push_str("no surface of this pixel asks for lights\n");
+        text.push_str("nothing seen in this pixel is lit by lights\n");
     }
     text
 }

@@ -117,6 +117,8 @@ fn ask(args: &ExplainArgs, changes: &Changes) -> Result<Asked, Failure> {
         let mut recipe = Recipe::in_picture(Path::new(&args.scene))?;
         recipe.change(changes);
         let loaded = recipe.load(&args.reading.search)?;
+        let changed = recipe.set.iter().map(|change| format!(" with {change}")).collect::<String>();
+        recipe.name = format!("{}, {}{changed}", args.scene, recipe.name);
         for note in recipe.keep_old_defaults(&loaded.scene) {
             tell(&format!("note: {note}"));
         }

@@ -7,7 +7,7 @@ mod dialect;
 mod scene;
 
 pub use dialect::Dialect;
-pub use scene::{Driver, Model, parse};
+pub use scene::{Driver, Model, has_keywords, parse};
 
 #[cfg(test)]
 mod tests;

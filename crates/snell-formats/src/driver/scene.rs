@@ -61,6 +61,11 @@ impl Driver {
     }
 }
 
+/// Does any line start like one of a driver? Of another text, each line would be an unknown keyword.
+pub fn has_keywords(source: &Source) -> bool {
+    lines(source).iter().any(|line| KEYWORDS.contains(&line.keyword.text))
+}
+
 /// Reads a driver. Without a `dialect` the year is recognised.
 ///
 /// # Errors

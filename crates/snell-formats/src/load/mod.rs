@@ -155,7 +155,11 @@ pub fn load(name: &str, options: &LoadOptions) -> Result<Loaded, Vec<Report>> {
             Err(_) if path.extension().is_some_and(|e| ENDINGS.iter().any(|ending| e.eq_ignore_ascii_case(ending))) => {
                 Err(vec![no_file(path)])
             }
-            Err(report) => Err(vec![report]),
+            Err(report) => {
+                let message = format!("there is no file and no built-in scene `{name}`");
+                let file = near_file(path).map(|near| format!("did you mean the file `{near}`? ")).unwrap_or_default();
+                Err(vec![Report::error(message).help(file + &report.help.unwrap_or_default())])
+            }
         };
     }
     let bytes =
@@ -182,6 +186,10 @@ pub fn load_bytes(
     }
     let (source, warning) = decode(name, bytes);
     let kind = kind_of(path, &source.text);
+    if kind == Kind::Driver && !driver::has_keywords(&source) {
+        let help = "scenes are TOML or JSON, drivers of the course, or NFF; docs/scenes.md has an example of each";
+        return Err(vec![Report::error(format!("`{name}` is no scene that Snell knows")).help(help)]);
+    }
     let loaded = load_text(source, kind, folder, options);
     match (loaded, warning) {
         (Ok(mut loaded), warning) => {
@@ -194,15 +202,21 @@ pub fn load_bytes(
 
 /// There is no such file, but perhaps one of nearly that name.
 fn no_file(path: &Path) -> Report {
+    let report = Report::error(format!("there is no file `{}`", path.display()));
+    match near_file(path) {
+        Some(near) => report.help(format!("did you mean `{near}`?")),
+        None => report,
+    }
+}
+
+/// The file of the same folder whose name is most like another.
+fn near_file(path: &Path) -> Option<String> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let names =
         std::fs::read_dir(folder).into_iter().flatten().flatten().filter_map(|e| e.file_name().into_string().ok());
     let (names, wanted): (Vec<String>, _) = (names.collect(), path.file_name().unwrap_or_default().to_string_lossy());
-    let report = Report::error(format!("there is no file `{}`", path.display()));
-    match nearest(&wanted, names.iter().map(String::as_str)) {
-        Some(near) => report.help(format!("did you mean `{}`?", path.with_file_name(near).display())),
-        None => report,
-    }
+    let near = nearest(&wanted, names.iter().map(String::as_str))?;
+    Some(path.with_file_name(near).display().to_string())
 }
 
 /// What a file is that is too large to be read as a scene, by its first bytes.

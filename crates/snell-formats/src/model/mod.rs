@@ -60,7 +60,7 @@ pub fn parse_model(path: &Path, bytes: &[u8]) -> Result<Model, Report> {
         }
         (what, _) => {
             let what = what.words().map_or(String::new(), |what| format!(" but {what}"));
-            Err(Report::error(format!("`{name}` is no model{what}: models end in .obj, .ply or .stl")))
+            Err(Report::error(format!("`{name}` is no model{what}: models are OBJ, PLY or STL")))
         }
     }
 }

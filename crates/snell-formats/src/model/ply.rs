@@ -166,7 +166,7 @@ fn read_header(source: &Source) -> Result<(Format, Vec<Element>), Report> {
                     [kind, name] => (None, kind, name),
                     _ => return Err(error("a property is `property TYPE NAME` or `property list TYPE TYPE NAME`")),
                 };
-                let known = |word| Type::of(word).ok_or_else(|| error(&format!("`{word}` is no type of numbers")));
+                let known = |word| Type::of(word).ok_or_else(|| error(&format!("`{word}` is not a number type")));
                 let property =
                     Property { name: name.to_owned(), count: count.map(known).transpose()?, kind: known(kind)? };
                 let element = elements.last_mut().ok_or_else(|| error("a property stands behind its element"))?;
@@ -282,7 +282,7 @@ fn read_elements(header: &Source, elements: &[Element], numbers: &mut impl Numbe
                 };
                 let length = numbers.next(count)?;
                 if !(length >= 0.0 && length.fract() == 0.0) {
-                    return Err(numbers.error(format!("a list has a number of values, read {length}")));
+                    return Err(numbers.error(format!("the length of a list is a whole number from 0, read {length}")));
                 }
                 let wanted =
                     (element.name == "face" || strips) && matches!(&*property.name, "vertex_indices" | "vertex_index");
@@ -470,7 +470,7 @@ mod tests {
             ("format ascii 1.0", "format utf8 1.0", 2, "the format is"),
             ("element vertex 4", "element vertex four", 4, "a name and a number"),
             ("element vertex 4", "element vertex 99999999999", 4, "more vertices"),
-            ("property uchar red", "property byte red", 7, "`byte` is no type"),
+            ("property uchar red", "property byte red", 7, "`byte` is not a number type"),
             ("property float x", "property float w", 4, "x, y and z"),
             ("element odd 2", "elephant odd 2", 12, "unknown line"),
             ("1 1 255 0", "1 1 255 x", 17, "read `x`"),

@@ -47,7 +47,7 @@ impl Format {
             _ => {
                 let near =
                     nearest(&ending, ENDINGS.iter().copied()).map_or(String::new(), |n| format!("did you mean .{n}? "));
-                Err(Report::error(format!("`{}` has no ending of a picture", path.display()))
+                Err(Report::error(format!("`{}` is not named like a picture", path.display()))
                     .help(near + "pictures are .png, .ppm, .exr or .npy"))
             }
         }

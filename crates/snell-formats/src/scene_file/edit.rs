@@ -86,7 +86,11 @@ impl Change<'_> {
             }
             let known: Vec<String> =
                 elements.iter().enumerate().map(|(i, e)| name(e).map_or((i + 1).to_string(), str::to_owned)).collect();
-            return Err(unknown(&format!("{first}.{element}"), element, &known));
+            let report = unknown(&format!("{first}.{element}"), element, &known);
+            let help = report.help.clone().unwrap_or_default();
+            let numbers =
+                if elements.is_empty() { String::new() } else { format!("; or a number from 1 to {}", elements.len()) };
+            return Err(report.help(help + &numbers));
         };
         let mut steps = vec![Step::from(first), Step::from(index)];
         if rest.is_empty() {
@@ -123,7 +127,11 @@ impl Change<'_> {
     fn of_settings(&self, scene: &mut Scene) -> Result<Vec<Step>, Report> {
         let known = schema_keys();
         if !known.iter().any(|key| key == self.first) {
-            return Err(unknown(self.first, self.first, &known));
+            let report = unknown(self.first, self.first, &known);
+            return Err(match named(scene, self.first) {
+                Some(list) => report.help(format!("did you mean `{list}.{}`?", self.first)),
+                None => report,
+            });
         }
         let (lights, materials, textures) =
             (take(&mut scene.lights), take(&mut scene.materials), take(&mut scene.textures));
@@ -182,6 +190,19 @@ impl Change<'_> {
 
 fn read<T: DeserializeOwned>(value: Value) -> Result<T, Report> {
     T::deserialize(value.into_deserializer()).map_err(|e| explain(e.message(), ""))
+}
+
+/// The list or table in which something has this name.
+fn named(scene: &Scene, name: &str) -> Option<&'static str> {
+    let is = |own: &Option<String>| own.as_deref() == Some(name);
+    match () {
+        () if scene.materials.contains_key(name) => Some("material"),
+        () if scene.spheres.iter().any(|sphere| is(&sphere.name)) => Some("sphere"),
+        () if scene.meshes.iter().any(|mesh| is(&mesh.name)) => Some("mesh"),
+        () if scene.lights.iter().any(|light| is(&light.name)) => Some("light"),
+        () if scene.textures.contains_key(name) => Some("texture"),
+        () => None,
+    }
 }
 
 /// The keys of a scene.

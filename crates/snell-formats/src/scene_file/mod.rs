@@ -79,7 +79,18 @@ fn explain(message: &str, read: &str) -> Report {
         return Report::error(format!("{key} is missing")).help(help);
     }
     let read = read.lines().next().unwrap_or_default();
-    if read.is_empty() { Report::error(message) } else { Report::error(format!("{message}, read `{read}`")) }
+    // Serde names the types of Rust.
+    let message =
+        message.replace("expected f64", "expected a number").replace("expected u32", "expected a whole number");
+    let report =
+        if read.is_empty() { Report::error(&*message) } else { Report::error(format!("{message}, read `{read}`")) };
+    match &*message {
+        "invalid type: map, expected a sequence" => {
+            report.help("of these a scene may have many: write [[…]] with two brackets")
+        }
+        m if m.contains("escape") => report.help("write / instead of \\ in the names of files, or put the text in '…'"),
+        _ => report,
+    }
 }
 
 /// The token at a place that `serde_json` names: line and column from 1, the column after the token.

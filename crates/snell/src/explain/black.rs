@@ -60,7 +60,7 @@ fn at_surface(names: &Names<'_>, explanation: &Explanation) -> Option<String> {
         [first, ..] => match &first.blocked_by {
             _ if lights.iter().all(|light| !light.facing) => "it faces away from every light".to_owned(),
             Some(blocker) => format!("`{blocker}` blocks its light `{}`", first.name),
-            None => "nothing of its light comes back".to_owned(),
+            None => "none of its light reaches the camera".to_owned(),
         },
     };
     Some(format!("`{object}` is seen in pixel {x},{y}, but {why}"))

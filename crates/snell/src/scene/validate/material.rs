@@ -117,7 +117,7 @@ fn dispersion(scene: &Scene, found: &mut Findings, at: &impl Fn(&str) -> Vec<Ste
 
 fn absorption(found: &mut Findings, at: &impl Fn(&str) -> Vec<Step>, m: &Material) {
     if let Some(distance) = m.attenuation_distance {
-        found.positive(at("attenuation_distance"), distance, "a thickness", "");
+        found.positive(at("attenuation_distance"), distance, "a distance", "");
     }
     let colors = [("attenuation_color", m.attenuation_color), ("sigma_a", m.sigma_a)];
     for (key, color) in colors.into_iter().filter_map(|(key, color)| Some((key, color?))) {
