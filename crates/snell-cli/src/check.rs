@@ -140,7 +140,7 @@ fn may_write(output: &Path, model: &Path, force: bool) -> Outcome {
         let report = Report::error("a mended model is written as OBJ").help("like -o mended.obj");
         return Err(Failure::new(USAGE, report));
     }
-    if !force {
+    if !(force && output == model) {
         refuse_inputs(output, [model])?;
     }
     refuse_existing(output, force).or_fail(USAGE)?;

@@ -1,6 +1,7 @@
 //! `snell convert`.
 
 use crate::args::ConvertArgs;
+use crate::excerpt::plain;
 use crate::input;
 use crate::output::{is_standard, refuse_existing, refuse_inputs};
 use crate::say::{self, FAILED, Failure, OrFail, Outcome, SCENE, USAGE};
@@ -24,7 +25,8 @@ pub fn run(args: &ConvertArgs) -> Outcome {
     let world = loaded.world().or_fail(SCENE)?;
     say::reports(&loaded.warnings_with(&world));
 
-    let folder = output.and_then(Path::parent).unwrap_or(Path::new(""));
+    let target = output.map(disk::behind_links);
+    let folder = target.as_deref().and_then(Path::parent).unwrap_or(Path::new(""));
     let name_of = |path: &Path| relative(path, folder);
     for (mesh, path) in loaded.scene.meshes.iter_mut().zip(&loaded.mesh_paths) {
         if let Some(path) = path {
@@ -51,12 +53,10 @@ pub fn run(args: &ConvertArgs) -> Outcome {
     };
     // The scene itself may be rewritten by --force, but nothing that it names.
     let read: Vec<&Path> = loaded.files().filter(|path| !args.force || Some(*path) != loaded.path.as_deref()).collect();
-    refuse_inputs(output, read.iter().copied())?;
-    let may_write = |path: &Path| {
-        refuse_existing(path, args.force)?;
-        disk::check_writable(path)
-    };
-    let written = scene_file::save(loaded.scene.clone(), output, syntax, &heading, may_write).or_fail(FAILED)?;
+    refuse_inputs(output, read.into_iter().chain(input::standard(&args.file)))?;
+    refuse_existing(output, args.force).or_fail(FAILED)?;
+    disk::check_writable(output).or_fail(FAILED)?;
+    let written = scene_file::save(loaded.scene.clone(), output, syntax, &heading).or_fail(FAILED)?;
     for file in &written {
         say::tell(&file.display().to_string());
     }
@@ -65,7 +65,7 @@ pub fn run(args: &ConvertArgs) -> Outcome {
 
 fn heading(loaded: &Loaded) -> String {
     let dialect = loaded.dialect.map_or(String::new(), |d| format!(", read as a driver of the dialect {}", d.name()));
-    format!("# From {}{dialect}.\n\n", loaded.source.name)
+    format!("# From {}{dialect}.\n\n", plain(&loaded.source.name).replace('\n', " "))
 }
 
 /// The way from a folder to a file, with `/` on every system.
@@ -76,7 +76,8 @@ fn relative(file: &Path, folder: &Path) -> String {
     let common = file.components().zip(folder.components()).take_while(|(a, b)| a == b).count();
     let up = folder.components().skip(common).map(|_| Component::ParentDir);
     let way: PathBuf = up.chain(file.components().skip(common)).collect();
-    way.to_string_lossy().replace('\\', "/")
+    let way = way.to_string_lossy();
+    if cfg!(windows) { way.replace('\\', "/") } else { way.into_owned() }
 }
 
 #[cfg(test)]

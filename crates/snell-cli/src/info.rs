@@ -13,7 +13,8 @@ use snell::world::World;
 use snell_formats::given::Given;
 use snell_formats::load::Loaded;
 use snell_formats::picture::{self, Picture};
-use snell_formats::{LoadOptions, Report};
+use snell_formats::text::decode;
+use snell_formats::{LoadOptions, Report, disk};
 use std::fmt::Write;
 use std::io::IsTerminal;
 use std::path::Path;
@@ -26,6 +27,14 @@ pub fn run(args: &InfoArgs) -> Outcome {
             return Err(Failure::new(SCENE, report.help(help)));
         }
         _ => {}
+    }
+    if args.scene && Path::new(&args.file).is_file() {
+        // Not what it needs besides, which may not be there.
+        if let Some(report) = what_is(&args.file).no_scene(&args.file) {
+            return Err(Failure::new(SCENE, report));
+        }
+        let bytes = disk::read(Path::new(&args.file), disk::MAX_SCENE_BYTES).or_fail(SCENE)?;
+        return print_text(&decode(&args.file, &bytes).0.text);
     }
     let loaded = input::scene(&args.file, &LoadOptions::from(&args.reading))?;
     if args.scene {
@@ -52,7 +61,7 @@ fn about_picture(picture: &Picture, args: &InfoArgs) -> Outcome {
             return Err(Failure::new(FAILED, report));
         }
         text.push_str("it does not say how it was made\n");
-        return say::print(&text);
+        return say::print(&plain(&text));
     };
     if args.scene {
         return print_text(&recipe.text);

@@ -26,6 +26,11 @@ pub fn scene(name: &str, options: &LoadOptions) -> Result<Loaded, Failure> {
     load(name, options).or_fail(SCENE)
 }
 
+/// The file behind standard input, if that is what was named: it is read like any other.
+pub fn standard(name: &str) -> Option<&'static Path> {
+    (name == STANDARD).then_some(Path::new("/dev/stdin"))
+}
+
 /// What a file is, by its first bytes and its name; a pipe is not looked into, which would swallow them.
 pub fn what_is(name: &str) -> Given {
     let path = Path::new(name);

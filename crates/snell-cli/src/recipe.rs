@@ -9,7 +9,7 @@ use snell::film::Crop;
 use snell::scene::{Integrator, Rounding, Scene, Shadows, Transfer};
 use snell_formats::driver::Dialect;
 use snell_formats::load::{Kind, Loaded, ModelFile, load_text};
-use snell_formats::{LoadOptions, Report, Source, picture};
+use snell_formats::{LoadOptions, Report, Source, picture, scene_file};
 use std::path::{Path, PathBuf};
 
 /// How a picture is made: the text of its scene and all settings besides. Once rendered, those that the text may leave out are
@@ -71,6 +71,12 @@ pub struct Recipe {
     /// Models that the scene reads, in the order of reading, and their content.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub models: Vec<ModelFile>,
+    /// Settings that nobody asked for: they are what the defaults were when the picture was made.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub defaults: Vec<String>,
+    /// Is it from when pictures did not remember the settings that nobody asked for?
+    #[serde(skip)]
+    is_old: bool,
     /// SHA-256 of the finished film's numbers.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub film_sha256: Option<String>,
@@ -169,6 +175,8 @@ impl Recipe {
                 .iter()
                 .map(|m| ModelFile { path: absolute(&m.path), sha256: m.sha256.clone() })
                 .collect(),
+            defaults: Vec::new(),
+            is_old: false,
             film_sha256: None,
         };
         recipe.change(changes);
@@ -181,9 +189,11 @@ impl Recipe {
             let report = Report::error(format!("`{}` does not say how it was made", path.display()));
             Failure::new(FAILED, report.help("only PNG and EXR pictures made by Snell do"))
         })?;
-        serde_json::from_str(&remembered).map_err(|e| {
+        let mut recipe: Self = serde_json::from_str(&remembered).map_err(|e| {
             Failure::new(FAILED, Report::error(format!("the recipe in `{}` cannot be read: {e}", path.display())))
-        })
+        })?;
+        recipe.is_old = recipe.seed.is_none();
+        Ok(recipe)
     }
 
     /// Takes over what is asked to be other than it was.
@@ -202,8 +212,7 @@ impl Recipe {
             (self.size, self.stretch, self.crop) = (changes.size, changes.stretch, None);
         }
         if changes.integrator.is_some() && changes.integrator != self.integrator {
-            // What another model of light did about shadows says nothing here.
-            self.shadows = None;
+            self.forget_default_shadows();
         }
         self.crop = changes.crop.or(self.crop);
         self.spp = changes.spp.or(self.spp);
@@ -218,22 +227,33 @@ impl Recipe {
         }
     }
 
+    /// What another model of light does about shadows, if nobody says, is another thing.
+    fn forget_default_shadows(&mut self) {
+        if self.defaults.iter().any(|name| name == "shadows") {
+            self.shadows = None;
+        }
+    }
+
     /// Lets a change of the scene decide what the recipe remembers of its settings.
     fn forget(&mut self, change: &str) {
-        let key: String = change.split('=').next().unwrap_or_default().chars().filter(|c| !c.is_whitespace()).collect();
-        let all = key == "render";
-        let is = |name: &str| all || key.starts_with(&format!("render.{name}"));
+        let keys = scene_file::keys(change);
+        let [table, key] = [0, 1].map(|i| keys.get(i).map_or("", String::as_str));
+        if table == "camera" {
+            self.near = None;
+        }
+        if table != "render" {
+            return;
+        }
+        let is = |name: &str| key.is_empty() || key == name;
         if is("size") {
             (self.size, self.crop) = (None, None);
         }
         if is("integrator") {
-            (self.integrator, self.shadows) = (None, None);
+            self.integrator = None;
+            self.forget_default_shadows();
         }
         if is("shadows") {
             self.shadows = None;
-        }
-        if key.starts_with("camera") {
-            self.near = None;
         }
         self.spp = self.spp.filter(|_| !is("spp"));
         self.seed = self.seed.filter(|_| !is("seed"));
@@ -260,26 +280,31 @@ impl Recipe {
         };
         let source = Source::new(self.name.as_str(), self.text.as_str());
         let loaded = load_text(source, self.kind, &self.folder, &options).or_fail(SCENE)?;
-        let count = loaded.models.len().max(self.models.len());
-        for i in 0..count {
-            let (now, then) = (loaded.models.get(i), self.models.get(i));
-            if now.map(|m| &m.sha256) == then.map(|m| &m.sha256) {
-                continue;
-            }
-            let path = now.or(then).map(|m| m.path.display().to_string()).unwrap_or_default();
-            let was = then.map_or("it was not there".to_owned(), |m| {
-                format!("it was {} with SHA-256 {}", m.path.display(), m.sha256)
-            });
-            let message = format!("the model `{path}` has changed since the picture was made");
-            let help = format!("{was}; if it is elsewhere now, name its folder with --search DIR");
-            return Err(Failure::new(SCENE, Report::error(message).help(help)));
-        }
-        Ok(loaded)
+        // A change may change which files a scene reads, but not what is in them.
+        let changed = self.film_sha256.is_none();
+        let known = |file: &ModelFile, files: &[ModelFile]| files.iter().any(|other| other.sha256 == file.sha256);
+        let other = |now: &&ModelFile| {
+            let of_its_path = |then: &ModelFile| then.path == absolute(&now.path) && then.sha256 != now.sha256;
+            let of_its_name = |then: &ModelFile| then.path.file_name() == now.path.file_name();
+            self.models.iter().any(of_its_path)
+                || (!known(now, &self.models) && (!changed || self.models.iter().any(of_its_name)))
+        };
+        let lost = self.models.iter().find(|then| !changed && !known(then, &loaded.models));
+        let Some(file) = loaded.models.iter().find(other).or(lost) else { return Ok(loaded) };
+        let was = self.models.iter().find(|then| then.path.file_name() == file.path.file_name());
+        let was = was.map_or("it was not there".to_owned(), |m| {
+            format!("it was {} with SHA-256 {}", m.path.display(), m.sha256)
+        });
+        let message = format!("the model `{}` has changed since the picture was made", file.path.display());
+        let help = format!("{was}; if it is elsewhere now, name its folder with --search DIR");
+        Err(Failure::new(SCENE, Report::error(message).help(help)))
     }
 
     /// Takes over what the settings of the scene have come to.
     pub fn resolve(&mut self, scene: &Scene) {
         let render = &scene.render;
+        let given = [("shadows", self.shadows.is_some()), ("spp", self.spp.is_some()), ("depth", self.depth.is_some())];
+        self.defaults = given.into_iter().filter(|(_, given)| !given).map(|(name, _)| name.to_owned()).collect();
         self.near = Some(scene.camera.image_plane());
         self.spp = Some(render.spp);
         self.seed = Some(render.seed);
@@ -297,6 +322,9 @@ impl Recipe {
     pub fn keep_old_defaults(&mut self, scene: &Scene) -> Vec<&'static str> {
         let integrator = self.integrator.unwrap_or(scene.render.integrator);
         let mut notes = Vec::new();
+        if !self.is_old {
+            return notes;
+        }
         if integrator == Integrator::Whitted && self.shadows.or(scene.render.shadows).is_none() {
             self.shadows = Some(Shadows::Opaque);
             notes.push(
@@ -341,6 +369,8 @@ impl Recipe {
     }
 }
 
+/// A path that a picture can remember, as text.
 fn absolute(path: &Path) -> PathBuf {
-    std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
+    let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+    path.to_string_lossy().into_owned().into()
 }

@@ -1,7 +1,7 @@
 //! `snell render`.
 
 use crate::args::{ProgressKind, RenderArgs};
-use crate::input::what_is;
+use crate::input::{self, what_is};
 use crate::output::{self, beside, is_standard, refuse_inputs};
 use crate::paths;
 use crate::progress::{Phase, Reporter, short};
@@ -59,8 +59,9 @@ pub fn run(args: &RenderArgs) -> Outcome {
         keep_all_inputs(args, &names, &outputs)?;
     }
     let mut failures = Vec::new();
+    let mut inputs: Vec<PathBuf> = Vec::new();
     for (name, output) in names.iter().zip(&outputs) {
-        match one(name, args, output) {
+        match one(name, args, output, &mut inputs) {
             Ok(()) => {}
             // One bad scene of many does not keep the others from being drawn.
             Err(failure) if names.len() > 1 && failure.code != INTERRUPTED => {
@@ -203,14 +204,16 @@ fn refuse_picture(name: &str) -> Outcome {
     Err(Failure::new(SCENE, report.help(help)))
 }
 
-/// Renders one picture.
-fn one(name: &str, args: &RenderArgs, output: &Path) -> Outcome {
+/// Renders one picture. `inputs` are all files that were read for this and the ones before.
+fn one(name: &str, args: &RenderArgs, output: &Path, inputs: &mut Vec<PathBuf>) -> Outcome {
     let reading = Phase::start(args.progress, args.quiet, "reading", name);
     let read = read(name, args);
     drop(reading);
     let (mut recipe, mut loaded) = read?;
     // A scene that a picture remembers is not read again, but is somebody's work all the same.
-    refuse_inputs(output, loaded.files().chain([Path::new(&recipe.name)]))?;
+    let read = loaded.files().chain([Path::new(&recipe.name)]).chain(input::standard(name));
+    inputs.extend(read.map(Path::to_owned));
+    refuse_inputs(output, inputs.iter().map(PathBuf::as_path))?;
     let widened = recipe.apply(&mut loaded.scene);
     recipe.resolve(&loaded.scene);
     let preparing = Phase::start(args.progress, args.quiet, "preparing", &recipe.name);
@@ -337,8 +340,13 @@ fn short_hash(hash: &str) -> &str {
 /// Says what is odd about a scene.
 fn warn(reports: &[Report], args: &RenderArgs) {
     match args.progress {
+        ProgressKind::Json if args.quiet => {}
         ProgressKind::Json => {
-            for report in reports {
+            let (warnings, more, _) = say::shown(reports);
+            for line in more {
+                tell(&json!({ "event": "note", "message": line }).to_string());
+            }
+            for report in warnings {
                 let place = report.place.as_ref().map(|(source, range)| {
                     let (line, column) = source.line_column(range.start);
                     json!({ "file": &*source.name, "line": line, "column": column })

@@ -1,6 +1,7 @@
 //! `snell scenes`.
 
 use crate::args::ScenesArgs;
+use crate::excerpt::plain;
 use crate::output::{is_standard, refuse_existing, write_text};
 use crate::say::{self, FAILED, OrFail, Outcome, USAGE};
 use snell_formats::{builtin, disk};
@@ -17,7 +18,7 @@ pub fn run(args: &ScenesArgs) -> Outcome {
             disk::check_writable(&output).or_fail(FAILED)?;
         }
         write_text(&output, &source.text)?;
-        if is_standard(&output) { Ok(()) } else { say::print(&format!("{}\n", output.display())) }
+        if is_standard(&output) { Ok(()) } else { say::print(&plain(&format!("{}\n", output.display()))) }
     } else {
         let mut list = String::new();
         for (name, text) in builtin::SCENES {

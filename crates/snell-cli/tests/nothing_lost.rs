@@ -148,7 +148,7 @@ fn files_of_the_wrong_kind() {
         ("model.obj", "OBJ model"),
         ("solid.stl", "binary STL"),
         ("a.glb", "glTF"),
-        ("scene.png", "--from scene.png"),
+        ("scene.png", "snell render --from"),
         ("a.jpg", "JPEG"),
         ("library.mtl", "materials"),
         ("none.toml", "no file `none.toml`"),
@@ -200,12 +200,16 @@ fn outputs_that_are_inputs() {
             fs::hard_link(at.join(input), at.join(format!("hard-{input}.{ending}"))).unwrap();
         }
     }
+    run(at, &["scenes", "--save", "lecture/default", "-o", "plain.toml"]);
+    run(at, &["render", "-q", "plain.toml", "--size", "8x8", "-o", "plain.exr"]);
+    std::os::unix::fs::symlink("plain.toml", at.join("plain.toml.png")).unwrap();
     let before = files(at);
     let of_scene = ["scene.toml", "model.obj", "library.mtl", "scene.png", "sky.exr"];
     // Its default name is that of its texture.
     refused(at, &["render", "scene.toml"], &before);
     refused(at, &["render", "scene.toml", "-o", "."], &before);
     refused(at, &["render", "lecture/default", "scene.toml", "-o", "."], &before);
+    refused(at, &["explain", "scene.toml", "3,3", "--mask", "new.png"], &before);
     for input in of_scene {
         let names = |ending: &str| {
             let own = input.ends_with(ending).then(|| input.to_owned());
@@ -235,6 +239,16 @@ fn outputs_that_are_inputs() {
             refused(at, &["check", "model.obj", "--repair", "-o", &name], &before);
         }
     }
+    // Standard input is a file, too, and a scene that a picture remembers is somebody's work.
+    for arguments in
+        [&["explain", "-", "3,3", "--svg", "plain.toml"][..], &["explain", "-", "3,3", "--html", "plain.toml"]]
+    {
+        let input = fs::File::open(at.join("plain.toml")).unwrap();
+        let output = command(at, arguments).stdin(input).output().unwrap();
+        judge(at, &arguments.join(" "), &output, &before);
+    }
+    refused(at, &["explain", "plain.exr", "3,3", "--svg", "plain.toml"], &before);
+    refused(at, &["render", "--from", "plain.exr", "-o", "plain.toml.png"], &before);
     refused(at, &["convert", "scene.toml", "-o", "scene.toml"], &before);
     refused(at, &["scenes", "--save", "lecture/default", "-o", "scene.toml"], &before);
     for name in ["older.png", "soft-older.png.png", "hard-older.png.exr"] {
@@ -591,7 +605,7 @@ fn a_killed_program_leaves_nothing_for_long() {
         child.wait().unwrap();
         assert!(fs::read(at.join("a.npy")).unwrap() == whole, "after {delay} ms");
     }
-    fs::write(at.join(".snell-AbCd12.tmp"), "left by another one").unwrap();
+    fs::write(at.join(".snell-writing-AbCd12AbCd120123.tmp"), "left by another one").unwrap();
     run(at, &["render", "-q", "lecture/default", "--size", "300x300", "-o", "a.npy"]);
     assert_eq!(fs::read_dir(at).unwrap().count(), 1);
 }

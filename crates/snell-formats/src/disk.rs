@@ -77,14 +77,16 @@ pub fn check_writable(path: &Path) -> Result<(), Report> {
 }
 
 /// Names of temporary files.
-const PREFIX: &str = ".snell-";
+const PREFIX: &str = ".snell-writing-";
 const SUFFIX: &str = ".tmp";
+/// Letters and digits between them.
+const RANDOM: usize = 16;
 
 /// A temporary file in a folder, which is locked as long as it is open; what a program left there that was killed is removed.
 fn temporary(folder: &Path, permissions: Option<Permissions>) -> std::io::Result<NamedTempFile> {
     remove_abandoned(folder);
     let mut builder = tempfile::Builder::new();
-    builder.prefix(PREFIX).suffix(SUFFIX);
+    builder.prefix(PREFIX).suffix(SUFFIX).rand_bytes(RANDOM);
     if let Some(permissions) = permissions {
         builder.permissions(permissions);
     }
@@ -114,8 +116,7 @@ fn remove_abandoned(folder: &Path) {
     for entry in entries.flatten() {
         let name = entry.file_name();
         let random = name.to_str().and_then(|name| name.strip_prefix(PREFIX)?.strip_suffix(SUFFIX));
-        // `tempfile` draws six letters and digits.
-        if random.is_some_and(|r| r.len() == 6 && r.bytes().all(|b| b.is_ascii_alphanumeric()))
+        if random.is_some_and(|r| r.len() == RANDOM && r.bytes().all(|b| b.is_ascii_alphanumeric()))
             && entry.file_type().is_ok_and(|kind| kind.is_file())
             && let Ok(file) = File::options().write(true).open(entry.path())
             && file.try_lock().is_ok()
@@ -135,11 +136,21 @@ fn is_device(path: &Path) -> bool {
     path.metadata().is_ok_and(|m| !m.is_file() && !m.is_dir())
 }
 
+/// What a path names, also where links lead to a file that is not there yet.
+pub fn behind_links(path: &Path) -> PathBuf {
+    let mut target = path.to_owned();
+    // As many as Linux follows.
+    for _ in 0..40 {
+        let Ok(next) = target.read_link() else { break };
+        target = target.parent().unwrap_or(Path::new("")).join(next);
+    }
+    target
+}
+
 /// The file behind a link, and its folder.
 fn target(path: &Path) -> Result<(PathBuf, PathBuf), Report> {
     let shown = path.display();
-    let target =
-        if path.is_symlink() { path.canonicalize().unwrap_or_else(|_| path.to_owned()) } else { path.to_owned() };
+    let target = behind_links(path);
     let folder = target.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new(".")).to_owned();
     if !folder.is_dir() {
         let message = format!("cannot write `{shown}`: there is no folder `{}`", folder.display());
@@ -248,6 +259,10 @@ mod tests {
         std::os::unix::fs::symlink(&real, &link).unwrap();
         write(&link, |w| w.write_all(b"new")).unwrap();
         assert!(link.is_symlink() && std::fs::read(&real).unwrap() == b"new");
+        let (later, early) = (folder.path().join("later"), folder.path().join("early"));
+        std::os::unix::fs::symlink("later", &early).unwrap();
+        write(&early, |w| w.write_all(b"new")).unwrap();
+        assert!(early.is_symlink() && std::fs::read(&later).unwrap() == b"new");
         let mut permissions = real.metadata().unwrap().permissions();
         permissions.set_readonly(true);
         std::fs::set_permissions(&real, permissions).unwrap();
@@ -260,14 +275,17 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let at = |name: &str| folder.path().join(name);
         // Left behind; in use; a person's own.
-        std::fs::write(at(".snell-Ab3xYz.tmp"), b"half a picture").unwrap();
-        let used = tempfile::Builder::new().prefix(PREFIX).suffix(SUFFIX).tempfile_in(folder.path()).unwrap();
+        std::fs::write(at(".snell-writing-Ab3xYzAb3xYz0123.tmp"), b"half a picture").unwrap();
+        let mut builder = tempfile::Builder::new();
+        let used = builder.prefix(PREFIX).suffix(SUFFIX).rand_bytes(RANDOM).tempfile_in(folder.path()).unwrap();
         used.as_file().lock().unwrap();
-        for name in [".snell-notes.tmp", ".snell-Ab3xY!.tmp", ".snell-Ab3xYz", "snell-Ab3xYz.tmp"] {
+        for name in
+            [".snell-backup.tmp", ".snell-writing-notes.tmp", ".snell-writing-Ab3xYzAb3xYz012!.tmp", ".snell-writing-"]
+        {
             std::fs::write(at(name), b"mine").unwrap();
         }
         write(&at("new.txt"), |w| w.write_all(b"new")).unwrap();
-        assert!(!at(".snell-Ab3xYz.tmp").exists());
+        assert!(!at(".snell-writing-Ab3xYzAb3xYz0123.tmp").exists());
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 6);
         assert!(used.path().exists());
     }

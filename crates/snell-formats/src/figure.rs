@@ -2,6 +2,7 @@
 
 use snell::explain::text::{bytes, mean};
 use snell::explain::{ExplainedHit, ExplainedNode, Explanation, NodeKind};
+use snell::scene::is_unprintable;
 use std::f64::consts::PI;
 use std::fmt::Write;
 
@@ -174,5 +175,7 @@ fn shortened(name: &str) -> String {
 /// As XML has it, which knows no control characters.
 fn plain(text: &str) -> String {
     let text: String = text.chars().filter(|c| !c.is_control()).collect();
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+    // XML 1.0 has no control characters and no U+FFFE and U+FFFF.
+    let odd = |c: char| is_unprintable(c) || matches!(c, '\u{fffe}' | '\u{ffff}');
+    text.replace(odd, "\u{fffd}").replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }

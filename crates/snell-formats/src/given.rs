@@ -2,7 +2,7 @@
 
 use crate::model::is_binary_stl;
 use crate::report::Report;
-use crate::text::looks_like_text;
+use crate::text::{decode, looks_like_text};
 use std::path::Path;
 
 /// What somebody has given.
@@ -79,10 +79,53 @@ pub fn given(path: &Path, bytes: &[u8]) -> Given {
         return Given::Model("a binary STL model");
     }
     let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
-    if let Some((_, known)) = ENDINGS.iter().find(|(known, _)| *known == ending) {
-        return *known;
+    if !looks_like_text(bytes) {
+        return ENDINGS.iter().find(|(known, _)| *known == ending).map_or(Given::Bytes, |(_, known)| *known);
     }
-    if looks_like_text(bytes) { Given::Text } else { Given::Bytes }
+    let (start, _) = decode("", &bytes[..bytes.len().min(START)]);
+    if start.text.trim_start().is_empty() && !ending.is_empty() {
+        // An empty file is what it is called.
+        return ENDINGS.iter().find(|(known, _)| *known == ending).map_or(Given::Text, |(_, known)| *known);
+    }
+    text_of_a_kind(&start.text)
+        .or_else(|| ENDINGS.iter().find(|(known, _)| *known == ending).map(|(_, known)| *known))
+        .unwrap_or(Given::Text)
+}
+
+/// So much of a text is looked at.
+const START: usize = 4096;
+
+/// What a text that is no scene says of itself.
+fn text_of_a_kind(text: &str) -> Option<Given> {
+    let lower = text.trim_start().to_ascii_lowercase();
+    let mut lines = text.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with('#')).take(20);
+    let keyword = |line: &str| line.split_whitespace().next().unwrap_or_default().to_owned();
+    let of_obj = |line: &str| {
+        ["v", "vt", "vn", "f", "o", "g", "s", "usemtl", "mtllib"].contains(&&*keyword(line))
+            && line.contains(char::is_whitespace)
+    };
+    match () {
+        () if lower.starts_with("ply\n") => Some(Given::Model("a PLY model")),
+        () if lower.starts_with("solid") && lower.contains("facet") => Some(Given::Model("an STL model")),
+        () if lower.starts_with('<') => {
+            Some(Given::Foreign("an XML file", "write it anew as a scene of Snell: docs/scenes.md shows how"))
+        }
+        () if lower.starts_with("off\n") => Some(Given::Foreign("an OFF model", MAKE_OBJ)),
+        () if lower.starts_with('{') && lower.contains("\"asset\"") && !lower.contains("\"snell\"") => {
+            Some(Given::Foreign("a glTF model", MAKE_OBJ))
+        }
+        () if lower.starts_with('{') && lower.contains("\"cells\"") && !lower.contains("\"snell\"") => {
+            Some(Given::Foreign("a notebook", "open it in Jupyter"))
+        }
+        () if text.lines().any(|line| keyword(line) == "newmtl") => Some(Given::Materials),
+        // `v x y z` is a vertex; an NFF has its `v` alone.
+        () if lines.clone().any(|line| keyword(line) == "v" && line.split_whitespace().count() >= 4)
+            && lines.all(of_obj) =>
+        {
+            Some(Given::Model("a Wavefront OBJ model"))
+        }
+        () => None,
+    }
 }
 
 impl Given {
@@ -142,6 +185,19 @@ mod tests {
             let report = given(Path::new(name), bytes).no_scene(name).unwrap();
             assert!(report.message.contains(expected), "{report}");
         }
+        for (bytes, expected) in [
+            (&b"# cube\nmtllib a.mtl\no cube\nv 0 0 0\nv 1 0 0\n"[..], "a Wavefront OBJ model"),
+            (b"solid a\n facet normal 0 0 1\n", "an STL model"),
+            (b"\xef\xbb\xbfply\nformat ascii 1.0\n", "a PLY model"),
+            (b"\n# m\nnewmtl a\nKd 1 1 1\n", "a library of materials"),
+            (b"<?xml version=\"1.0\"?>", "an XML file"),
+            (b"{ \"asset\": { \"version\": \"2.0\" } }", "a glTF model"),
+        ] {
+            assert_eq!(given(Path::new("a.txt"), bytes).words(), Some(expected));
+            assert_eq!(given(Path::new("a"), bytes).words(), Some(expected));
+        }
+        assert_eq!(given(Path::new("a"), b"v\nfrom 0 0 9\n"), Given::Text, "NFF");
+        assert_eq!(given(Path::new("a.json"), b"{ \"snell\": 1 }"), Given::Text);
         assert_eq!(given(Path::new("a.toml"), b"snell = 1\n"), Given::Text);
         assert_eq!(given(Path::new("d.txt"), b"PPM 3\n"), Given::Text);
     }

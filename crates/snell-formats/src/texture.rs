@@ -1,6 +1,6 @@
 //! Pictures as textures.
 
-use crate::picture::{self, Format, Picture};
+use crate::picture::{self, Picture};
 use crate::report::Report;
 use snell::film::Rgb;
 use snell::film::transfer::from_srgb;
@@ -16,11 +16,6 @@ use std::path::Path;
 /// # Errors
 /// When the file is not such a picture, is cut off or too large, or holds a number that is not finite as `f32`.
 pub fn read_image(path: &Path, srgb: bool) -> Result<Image, Report> {
-    Format::of(path).map_err(|report| {
-        let known = report.help.clone().unwrap_or_default();
-        let (from, to) = (path.display(), path.with_extension("png"));
-        report.help(format!("{known}; convert others, for example: magick {from} {}", to.display()))
-    })?;
     let mut picture = picture::read_as(path, |max| {
         let linear = |code: u32, max: u32| {
             let value = f64::from(code) / f64::from(max);
@@ -34,8 +29,12 @@ pub fn read_image(path: &Path, srgb: bool) -> Result<Image, Report> {
             })
         }
     })
-    .map_err(|report| match report.help {
+    .map_err(|report| match report.help.clone() {
         None if path.is_file() => report.help("save it again as .png, smaller if it is too large"),
+        Some(known) if path.is_file() => {
+            let (from, to) = (path.display(), path.with_extension("png"));
+            report.help(format!("{known}; convert others, for example: magick {from} {}", to.display()))
+        }
         _ => report,
     })?;
     let is_exr = picture.max.is_none();
@@ -58,6 +57,7 @@ pub fn read_image(path: &Path, srgb: bool) -> Result<Image, Report> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::picture::Format;
     use ::png::{BitDepth, ColorType};
     use snell::film::transfer::{Encoding, Rounding, Transfer};
     use snell::film::{Crop, Film};

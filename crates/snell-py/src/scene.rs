@@ -121,7 +121,7 @@ fn write(py: Python<'_>, path: PathBuf, text: String, arrays: ReadArrays<'_>) ->
         let mut scene = scene_file::parse(&source, Syntax::Json)?;
         inline.fill(&mut scene);
         // Who saves a scene under the name of a file means that file.
-        scene_file::save(scene, &path, syntax, "", |_| Ok(())).map(drop)
+        scene_file::save(scene, &path, syntax, "").map(drop)
     })
     .map_err(|report| failed(py, &[report], Some(&source)))
 }

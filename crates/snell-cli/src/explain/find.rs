@@ -3,17 +3,15 @@
 use super::{Asked, known_object};
 use crate::args::{ExplainArgs, ProgressKind};
 use crate::excerpt::plain;
-use crate::output::refuse_inputs;
 use crate::progress::Reporter;
 use crate::say::{self, FAILED, Failure, OrFail, Outcome, USAGE, tell};
 use snell::explain::find;
 use snell::film::transfer::{Encoding, Rounding, Transfer};
 use snell::film::{Crop, Film, Rgb};
 use snell::render::Options;
+use snell_formats::Report;
 use snell_formats::picture::{self, Format};
-use snell_formats::{Report, disk};
 use std::fmt::Write;
-use std::path::Path;
 
 /// Paths that are listed.
 const LISTED: usize = 20;
@@ -24,12 +22,11 @@ pub fn run(asked: &Asked, object: &str, args: &ExplainArgs) -> Outcome {
     let mask =
         args.mask.as_deref().map(|file| Format::of(file).map(|format| (file, format))).transpose().or_fail(USAGE)?;
     if let Some((file, _)) = mask {
-        refuse_inputs(file, asked.loaded.files().chain([Path::new(&args.scene)]))?;
-        disk::check_writable(file).or_fail(FAILED)?;
+        asked.refuse(file, args)?;
     }
     let reporter = Reporter::new(ProgressKind::Auto, false, "looking");
     let update = |progress| reporter.update(progress);
-    let options = Options { progress: Some(&update), ..Options::default() };
+    let options = Options { progress: Some(&update), crop: asked.recipe.crop, ..Options::default() };
     let found = find(world, &asked.loaded.scene, object, &options).unwrap_or_default();
     reporter.finish();
     let mut text = String::new();
@@ -46,8 +43,9 @@ pub fn run(asked: &Asked, object: &str, args: &ExplainArgs) -> Outcome {
     let _ = writeln!(text, "{pixels:9} px  together; above, a pixel counts once for each of its ways");
     if let Some((file, format)) = mask {
         let [width, height] = world.camera.size;
-        let mut film = Film::new([width, height], Crop { x: 0, y: 0, width, height })
-            .map_err(|e| Failure::new(FAILED, Report::error(e.to_string())))?;
+        let crop = asked.recipe.crop.unwrap_or(Crop { x: 0, y: 0, width, height });
+        let mut film =
+            Film::new([width, height], crop).map_err(|e| Failure::new(FAILED, Report::error(e.to_string())))?;
         for (pixel, &share) in film.pixels.iter_mut().zip(&found.mask) {
             *pixel = Rgb::gray(share);
         }

@@ -6,20 +6,20 @@ mod light;
 
 use crate::args::ExplainArgs;
 use crate::excerpt::plain;
-use crate::input::what_is;
+use crate::input::{self, what_is};
 use crate::output::{self, refuse_inputs, write_text};
 use crate::recipe::{Changes, Recipe};
-use crate::say::{self, Failure, OrFail, Outcome, SCENE, USAGE, tell};
+use crate::say::{self, FAILED, Failure, OrFail, Outcome, SCENE, USAGE, tell};
 use snell::explain::text::{self, Style};
 use snell::explain::{Explanation, Names, explain};
-use snell::scene::WarningCode;
+use snell::scene::{WarningCode, is_unprintable};
 use snell::world::World;
-use snell_formats::Report;
 use snell_formats::figure::figure;
 use snell_formats::given::Given;
 use snell_formats::load::Loaded;
 use snell_formats::page::page;
 use snell_formats::report::known_names;
+use snell_formats::{Report, disk};
 use std::path::Path;
 
 /// The viewer, built from `viewer/` by `npm run bundle`.
@@ -28,11 +28,20 @@ const VIEWER: &str = include_str!("../../assets/snell-viewer.js");
 /// What is explained: a scene as a command line asks for it.
 struct Asked {
     recipe: Recipe,
+    /// The scene file, also where a picture remembers it.
+    scene: String,
     loaded: Loaded,
     world: World,
 }
 
 impl Asked {
+    /// Refuses to write over anything that this comes from.
+    fn refuse(&self, output: &Path, args: &ExplainArgs) -> Outcome {
+        let named = [Path::new(&args.scene), Path::new(&self.scene)];
+        refuse_inputs(output, self.loaded.files().chain(named).chain(input::standard(&args.scene)))?;
+        if output::is_standard(output) { Ok(()) } else { disk::check_writable(output).or_fail(FAILED) }
+    }
+
     /// Says what is odd about it.
     fn warn(&self) {
         say::reports(&self.loaded.warnings_with(&self.world));
@@ -72,6 +81,13 @@ pub fn run(args: &ExplainArgs) -> Outcome {
         asked.warn();
         return find::run(&asked, object, args);
     }
+    if args.mask.is_some() {
+        let report = Report::error("--mask shows where --find finds an object");
+        return Err(Failure::new(
+            USAGE,
+            report.help("like `snell explain lecture/default --find green --mask green.png`"),
+        ));
+    }
     let Some(pixel) = args.pixel else {
         let report =
             Report::error("which pixel?").help("like `snell explain lecture/default 256,256`, or --find OBJECT");
@@ -87,10 +103,7 @@ pub fn run(args: &ExplainArgs) -> Outcome {
         known_light(&asked, light)?;
     }
     for file in [&args.html, &args.svg].into_iter().flatten() {
-        refuse_inputs(file, asked.loaded.files().chain([Path::new(&args.scene)]))?;
-        if !output::is_standard(file) {
-            snell_formats::disk::check_writable(file).or_fail(say::FAILED)?;
-        }
+        asked.refuse(file, args)?;
     }
     let explanation = asked.pixel(pixel)?;
     if let Some(light) = &args.light {
@@ -113,12 +126,10 @@ pub fn run(args: &ExplainArgs) -> Outcome {
 
 /// Reads what is explained, of a scene or of a picture that knows its scene.
 fn ask(args: &ExplainArgs, changes: &Changes) -> Result<Asked, Failure> {
-    let (recipe, mut loaded) = if let Given::Picture(_) = what_is(&args.scene) {
+    let (mut recipe, mut loaded) = if let Given::Picture(_) = what_is(&args.scene) {
         let mut recipe = Recipe::in_picture(Path::new(&args.scene))?;
         recipe.change(changes);
         let loaded = recipe.load(&args.reading.search)?;
-        let changed = recipe.set.iter().map(|change| format!(" with {change}")).collect::<String>();
-        recipe.name = format!("{}, {}{changed}", args.scene, recipe.name);
         for note in recipe.keep_old_defaults(&loaded.scene) {
             tell(&format!("note: {note}"));
         }
@@ -127,8 +138,14 @@ fn ask(args: &ExplainArgs, changes: &Changes) -> Result<Asked, Failure> {
         Recipe::of(&args.scene, &args.reading, changes)?
     };
     recipe.apply(&mut loaded.scene);
+    let scene = recipe.name.clone();
+    if recipe.name != args.scene && args.scene != output::STANDARD {
+        // What a picture remembers.
+        let changes: Vec<String> = recipe.set.iter().map(|change| format!(" with {change}")).collect();
+        recipe.name = format!("{}, {scene}{}", args.scene, changes.concat());
+    }
     let world = loaded.world().or_fail(SCENE)?;
-    Ok(Asked { recipe, loaded, world })
+    Ok(Asked { recipe, scene, loaded, world })
 }
 
 /// May stdout be coloured?
@@ -168,7 +185,10 @@ fn known(name: &str, what: &str, names: &[&str]) -> Outcome {
 /// The JSON form.
 fn json(explanation: &Explanation) -> String {
     // Every number in it is finite: worlds hold no others, and what is infinite is left out.
-    serde_json::to_string(explanation).unwrap_or_default()
+    let text = serde_json::to_string(explanation).unwrap_or_default();
+    // What stands in JSON as it is and steers a terminal is written as JSON writes other such characters.
+    let escaped = |c: char| if is_unprintable(c) { format!("\\u{:04x}", u32::from(c)) } else { c.to_string() };
+    if text.contains(is_unprintable) { text.chars().map(escaped).collect::<Vec<_>>().concat() } else { text }
 }
 
 fn write(file: &Path, text: &str) -> Outcome {

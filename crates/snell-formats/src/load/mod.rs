@@ -312,9 +312,11 @@ pub fn load_with(
         loaded.mesh_paths.push(path);
     }
     loaded.models = reader.files;
-    loaded.picture_paths = reader.pictures;
+    let mut pictures = reader.pictures;
     loaded.warnings = reader.warnings;
-    pictures::read(&mut loaded, &options.search)?;
+    pictures::read(&mut loaded, &options.search, &mut pictures)?;
+    loaded.models.extend(pictures.files);
+    loaded.picture_paths = pictures.paths;
     Ok(loaded)
 }
 

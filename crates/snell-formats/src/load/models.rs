@@ -1,12 +1,12 @@
 //! Models and their materials.
 
+use super::pictures::PictureReader;
 use super::{Loaded, ModelFile};
 use crate::disk;
 use crate::driver::Dialect;
 use crate::model::{Found, Mirror, Model, MtlMaterial, MtlRule, find, find_in, parse_model, parse_mtl, places};
 use crate::report::{Report, list};
 use crate::text::decode;
-use crate::texture::read_image;
 use snell::geometry::TriangleMesh;
 use snell::geometry::solid::structure;
 use snell::scene::{Integrator, Material, Mesh, Scene, Step, Texture, WarningCode};
@@ -29,8 +29,7 @@ pub(super) struct ModelReader<'a> {
     named: HashMap<(PathBuf, String), String>,
     numbers: HashMap<String, usize>,
     pub files: Vec<ModelFile>,
-    /// Textures, by the names that the scene gets for them.
-    pub pictures: HashMap<String, PathBuf>,
+    pub pictures: PictureReader,
     pub warnings: Vec<Report>,
 }
 
@@ -61,7 +60,7 @@ impl<'a> ModelReader<'a> {
             named: HashMap::new(),
             numbers: HashMap::new(),
             files: Vec::new(),
-            pictures: HashMap::new(),
+            pictures: PictureReader::default(),
             warnings,
         }
     }
@@ -203,11 +202,8 @@ impl<'a> ModelReader<'a> {
         let beside = model.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let found = find(file, beside, self.search).or_else(|_| find(file, self.folder, &[]));
         let path = found.map_err(|report| report.message)?.path;
-        let image = read_image(&path, true).map_err(|report| report.message)?;
-        self.read(&path).map_err(|report| report.message)?;
-        let pixels = Some(Arc::new(image));
         let name = path.display().to_string();
-        self.pictures.insert(name.clone(), path);
+        let pixels = Some(self.pictures.read(&name, &path, true).map_err(|report| report.message)?);
         let texture = Texture { checker: None, image: Some(name), repeat: [1.0, 1.0], linear: false, pixels };
         scene.textures.insert(material.to_owned(), texture);
         scene.materials[material].texture = Some(material.to_owned());

@@ -1,49 +1,68 @@
-//! The pictures that a scene names: on surfaces and as its sky.
+//! The pictures that a scene and its models name: on surfaces and as the sky.
 
 use super::{Loaded, ModelFile};
 use crate::disk;
-use crate::model::find;
+use crate::model::{find, find_in, places};
 use crate::report::Report;
 use crate::texture::read_image;
 use snell::scene::Step;
 use snell::texture::Image;
-use std::path::PathBuf;
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Reads them all.
-pub(super) fn read(loaded: &mut Loaded, search: &[PathBuf]) -> Result<(), Report> {
+/// Reads pictures, each file once.
+#[derive(Default)]
+pub(super) struct PictureReader {
+    /// By file, and whether its curve was decoded.
+    images: HashMap<(PathBuf, bool), Arc<Image>>,
+    /// By the names that the scene has for them, where they were found.
+    pub paths: HashMap<String, PathBuf>,
+    pub files: Vec<ModelFile>,
+}
+
+impl PictureReader {
+    /// A picture from a file, which the scene calls `name`.
+    pub fn read(&mut self, name: &str, path: &Path, srgb: bool) -> Result<Arc<Image>, Report> {
+        let key = (path.to_owned(), srgb);
+        if !self.images.contains_key(&key) {
+            let image = Arc::new(read_image(path, srgb)?);
+            if !self.files.iter().any(|file| file.path == path) {
+                let sha256 = disk::sha256([&disk::read(path, disk::MAX_MODEL_BYTES)?]);
+                self.files.push(ModelFile { path: path.to_owned(), sha256 });
+            }
+            self.images.insert(key.clone(), image);
+        }
+        self.paths.insert(name.to_owned(), path.to_owned());
+        Ok(Arc::clone(&self.images[&key]))
+    }
+}
+
+/// Reads those of the scene itself.
+pub(super) fn read(loaded: &mut Loaded, search: &[PathBuf], reader: &mut PictureReader) -> Result<(), Report> {
+    let places = places(&loaded.folder);
+    let mut one = |loaded: &mut Loaded, file: &str, srgb: bool, place: &[Step]| {
+        let put = |report: Report| if report.place.is_some() { report } else { loaded.places.put(report, place) };
+        let found =
+            find_in(file, &places, search).map_or_else(|| find(file, &loaded.folder, search), Ok).map_err(put)?;
+        let image = reader.read(file, &found.path, srgb).map_err(put)?;
+        let warning = found.warning.map(put);
+        loaded.warnings.extend(warning);
+        Ok::<_, Report>(image)
+    };
     for number in 0..loaded.scene.textures.len() {
         let (name, texture) = (&loaded.scene.textures.keys()[number], &loaded.scene.textures[number]);
         if let (Some(file), None) = (texture.image.clone(), &texture.pixels) {
-            let place = ["texture", name, "image"].map(Step::from);
-            let image = read_one(loaded, &file, !texture.linear, &place, search)?;
+            let (place, srgb) = (["texture", name, "image"].map(Step::from), !texture.linear);
+            let image = one(loaded, &file, srgb, &place)?;
             loaded.scene.textures[number].pixels = Some(image);
         }
     }
     if let Some(file) = loaded.scene.sky.as_ref().and_then(|sky| sky.image.clone()) {
-        let place = ["sky", "image"].map(Step::from);
-        let image = read_one(loaded, &file, true, &place, search)?;
+        let image = one(loaded, &file, true, &["sky", "image"].map(Step::from))?;
         if let Some(sky) = &mut loaded.scene.sky {
             sky.pixels = Some(image);
         }
     }
     Ok(())
-}
-
-fn read_one(
-    loaded: &mut Loaded,
-    file: &str,
-    srgb: bool,
-    place: &[Step],
-    search: &[PathBuf],
-) -> Result<Arc<Image>, Report> {
-    let put = |report: Report| if report.place.is_some() { report } else { loaded.places.put(report, place) };
-    let found = find(file, &loaded.folder, search).map_err(put)?;
-    let image = read_image(&found.path, srgb).map_err(put)?;
-    let sha256 = disk::sha256([&disk::read(&found.path, disk::MAX_MODEL_BYTES)?]);
-    let warning = found.warning.map(put);
-    loaded.warnings.extend(warning);
-    loaded.picture_paths.insert(file.to_owned(), found.path.clone());
-    loaded.models.push(ModelFile { path: found.path, sha256 });
-    Ok(Arc::new(image))
 }

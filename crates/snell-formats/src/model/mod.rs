@@ -14,7 +14,7 @@ pub use ply::parse_ply;
 pub use search::{Found, find, find_in, places};
 pub(crate) use stl::is_binary_stl;
 pub use stl::parse_stl;
-pub use write::{PLY_HEAD, write_obj, write_ply};
+pub use write::{write_obj, write_ply};
 
 use crate::given::{Given, given};
 use crate::report::Report;
@@ -48,11 +48,9 @@ pub fn parse_model(path: &Path, bytes: &[u8]) -> Result<Model, Report> {
     let what = given(path, bytes);
     let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
     match (what, &*ending) {
-        (Given::Model(_), _) if bytes.starts_with(b"ply") => parse_ply(&name, bytes),
-        (Given::Model(_), _) if is_binary_stl(bytes) => parse_stl(&name, bytes),
-        (Given::Model(_), "ply") => parse_ply(&name, bytes),
-        (Given::Model(_), "stl") => parse_stl(&name, bytes),
-        (Given::Model(_), "obj") => {
+        (Given::Model("a PLY model"), _) => parse_ply(&name, bytes),
+        (Given::Model("an STL model" | "a binary STL model"), _) => parse_stl(&name, bytes),
+        (Given::Model(_), _) | (Given::Text, "obj") => {
             let (source, warning) = decode(&name, bytes);
             let mut model = parse_obj(&source)?;
             model.warnings.extend(warning);

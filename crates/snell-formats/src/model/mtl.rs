@@ -108,12 +108,15 @@ pub fn parse_mtl(source: &Source) -> Result<(Vec<MtlMaterial>, Vec<Report>), Rep
     let mut materials: Vec<MtlMaterial> = Vec::new();
     let mut warnings = Vec::new();
     let mut ignored: Vec<String> = Vec::new();
+    // What `d` says of the material.
+    let mut opacity = None;
     for line in lines(source) {
         let keyword = line.keyword.text;
         if keyword == "newmtl" {
             let name = line.rest.first().map_or(0, |w| w.range.start)..line.range().end;
             let name = if line.rest.is_empty() { String::new() } else { source.text[name].to_owned() };
             materials.push(MtlMaterial { name, ..MtlMaterial::default() });
+            opacity = None;
             continue;
         }
         let Some(material) = materials.last_mut() else {
@@ -129,22 +132,28 @@ pub fn parse_mtl(source: &Source) -> Result<(Vec<MtlMaterial>, Vec<Report>), Rep
             "Kd" => material.kd = Some(color(&line)?),
             "Ks" => material.ks = color(&line)?,
             "Kr" => material.kr = Some(color(&line)?),
-            "Ke" => material.emission = color(&line)?,
+            "Ke" => match color(&line) {
+                Ok(emission) => material.emission = emission,
+                // Spectra and CIEXYZ, or what no one can read.
+                Err(_) => ignore(line_text(&line)),
+            },
             "Ns" => material.exponent = Some(exponent(&line)?),
-            "Ni" => {
-                let [eta] = line.exactly("Ni index_of_refraction")?;
+            // Other programs take these as they come, and so what is none of theirs is left out, not refused.
+            "Ni" => match line.exactly("Ni index_of_refraction") {
+                Ok([eta]) if INDICES.contains(&eta) => material.eta = Some(eta),
                 // Some exporters write 0 for what is not transparent.
-                material.eta = INDICES.contains(&eta).then_some(eta);
-                if material.eta.is_none() && eta != 0.0 {
-                    ignore(format!("`Ni {eta}`"));
+                Ok([0.0]) => {}
+                _ => ignore(line_text(&line)),
+            },
+            "d" | "Tr" => match line.exactly("d or Tr, and a number from 0 to 1") {
+                Ok([share]) if (0.0..=1.0).contains(&share) => {
+                    if keyword == "d" {
+                        opacity = Some(share);
+                    }
+                    material.opacity = opacity.or(material.opacity).or(Some(1.0 - share));
                 }
-            }
-            "d" if line.rest.first().is_some_and(|w| w.text == "-halo") => ignore("`d -halo`".to_owned()),
-            "d" => material.opacity = Some(share(&line)?),
-            "Tr" => {
-                let through = share(&line)?;
-                material.opacity = material.opacity.or(Some(1.0 - through));
-            }
+                _ => ignore(line_text(&line)),
+            },
             "Tf" => {
                 // The colour of what goes through; without spectra and CIEXYZ, which nobody writes.
                 if !line.rest.iter().all(|word| number(word) == Some(1.0)) {
@@ -244,13 +253,8 @@ fn exponent(line: &Line<'_>) -> Result<f64, Report> {
     Err(line.error(format!("an exponent is between 0 and 1e15, read {exponent}")))
 }
 
-/// Of `d` and `Tr`.
-fn share(line: &Line<'_>) -> Result<f64, Report> {
-    let [share] = line.exactly("d or Tr, and a number from 0 to 1")?;
-    if (0.0..=1.0).contains(&share) {
-        return Ok(share);
-    }
-    Err(line.error(format!("`{}` is between 0 and 1, read {share}", line.keyword.text)))
+fn line_text(line: &Line<'_>) -> String {
+    format!("`{}`", &line.source.text[line.range()])
 }
 
 #[cfg(test)]
@@ -307,9 +311,13 @@ mod tests {
             warnings.len() == 1 && warnings[0].message.contains("`Tf`, `Pm`, `illum 7`, `Ni -3`, `d -halo`"),
             "{warnings:?}"
         );
-        for (line, message) in [("d 2", "between 0 and 1, read 2"), ("Tr x", "read `x`"), ("d", "read 0")] {
-            let report = parse_mtl(&Source::new("m.mtl", format!("newmtl a\n{line}\n"))).unwrap_err();
-            assert!(report.message.contains(message), "{report}");
+        // What was never looked at before is no reason to refuse a model.
+        for line in
+            ["d 2", "Tr x", "d", "d 0,5", "Tr 1 1 1", "Ke spectral a.rfl", "Ke inf 0 0", "Ni", "Ni 1 2", "Ni nan"]
+        {
+            let (read, warnings) = parse_mtl(&Source::new("m.mtl", format!("newmtl a\nKd 1 1 1\n{line}\n"))).unwrap();
+            assert!(read[0].beyond_the_course().is_empty(), "{line}");
+            assert!(warnings.len() == 1 && warnings[0].message.contains(&format!("`{line}`")), "{warnings:?}");
         }
     }
 

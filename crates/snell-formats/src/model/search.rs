@@ -52,10 +52,10 @@ pub fn places(folder: &Path) -> Vec<PathBuf> {
 
 /// As [`find`], with the [`places`] of the folder.
 pub fn find_in(name: &str, places: &[PathBuf], search: &[PathBuf]) -> Option<Found> {
-    // A driver made on Windows.
-    let name = name.replace('\\', "/");
-    let file_name = Path::new(&name).file_name().map(PathBuf::from).unwrap_or_default();
-    for candidate in [Path::new(&name), file_name.as_path()] {
+    // As it is, as a driver made on Windows means it, and without its folders.
+    let slashed = name.replace('\\', "/");
+    let file_name = Path::new(&slashed).file_name().map(PathBuf::from).unwrap_or_default();
+    for candidate in [Path::new(name), Path::new(&slashed), file_name.as_path()] {
         let there = |folders: &[PathBuf]| -> Vec<PathBuf> {
             folders.iter().map(|f| f.join(candidate)).filter(|p| p.is_file()).collect()
         };
@@ -64,7 +64,7 @@ pub fn find_in(name: &str, places: &[PathBuf], search: &[PathBuf]) -> Option<Fou
         }
         let found = there(places);
         if let Some(path) = found.first() {
-            return Some(Found { path: path.clone(), warning: ambiguous(&name, &found) });
+            return Some(Found { path: path.clone(), warning: ambiguous(name, &found) });
         }
     }
     None

@@ -19,8 +19,10 @@ const TRIANGLE: usize = 50;
 /// # Errors
 /// A file that ends too early, a number that is none, a loop without three corners, no triangle at all.
 pub fn parse_stl(name: &str, bytes: &[u8]) -> Result<Model, Report> {
-    let (mesh, warning) = if !is_binary_stl(bytes) && looks_like_text(bytes) && is_stl_text(bytes) {
-        let (source, warning) = decode(name, bytes);
+    // Old editors and systems end texts with ^Z or zeros.
+    let trimmed = &bytes[..bytes.iter().rposition(|b| ![0, 0x1a].contains(b)).map_or(0, |last| last + 1)];
+    let (mesh, warning) = if !is_binary_stl(bytes) && looks_like_text(trimmed) && is_stl_text(trimmed) {
+        let (source, warning) = decode(name, trimmed);
         (text(&source)?, warning)
     } else {
         binary(name, bytes)?

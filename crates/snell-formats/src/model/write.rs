@@ -38,15 +38,12 @@ pub fn write_obj(mesh: &TriangleMesh, libraries: &[String], out: &mut (impl Writ
     Ok(())
 }
 
-/// How the files of [`write_ply`] start.
-pub const PLY_HEAD: &str = "ply\nformat binary_little_endian 1.0\ncomment a mesh of a scene, written by Snell\n";
-
 /// Writes vertices and faces of a mesh as a binary PLY, with the bits of every `f64`.
 ///
 /// # Errors
 /// When the writer fails.
 pub fn write_ply(mesh: &TriangleMesh, out: &mut (impl Write + ?Sized)) -> Result<()> {
-    writeln!(out, "{PLY_HEAD}element vertex {}", mesh.vertices.len())?;
+    writeln!(out, "ply\nformat binary_little_endian 1.0\nelement vertex {}", mesh.vertices.len())?;
     writeln!(out, "property double x\nproperty double y\nproperty double z\nelement face {}", mesh.faces.len())?;
     writeln!(out, "property list uchar uint vertex_indices\nend_header")?;
     for v in &mesh.vertices {

@@ -33,6 +33,17 @@ pub enum Format {
 const ENDINGS: &[&str] = &["png", "ppm", "exr", "npy"];
 
 impl Format {
+    /// The format of a picture that starts with these bytes.
+    fn in_bytes(bytes: &[u8]) -> Option<Self> {
+        match bytes {
+            [0x89, b'P', b'N', b'G', ..] => Some(Self::Png { sixteen_bit: false }),
+            [b'P', b'3' | b'6', space, ..] if space.is_ascii_whitespace() => Some(Self::Ppm { binary: false }),
+            [0x76, 0x2f, 0x31, 0x01, ..] => Some(Self::Exr),
+            [0x93, b'N', b'U', b'M', b'P', b'Y', ..] => Some(Self::Npy),
+            _ => None,
+        }
+    }
+
     /// The format that a file name asks for.
     ///
     /// # Errors
@@ -155,8 +166,8 @@ pub(crate) fn read_as<P: Clone + 'static, F: Fn(Rgb) -> P + 'static>(
     path: &Path,
     convert: impl FnOnce(Option<u32>) -> F,
 ) -> Result<Picture<P>, Report> {
-    let format = Format::of(path)?;
     let bytes = disk::read(path, disk::MAX_MODEL_BYTES)?;
+    let format = Format::in_bytes(&bytes).map_or_else(|| Format::of(path), Ok)?;
     let picture = match format {
         Format::Png { .. } => png::read(&bytes, convert),
         Format::Ppm { .. } => ppm::read(&bytes, convert),

@@ -7,6 +7,7 @@ use serde::Serialize;
 use serde::de::{DeserializeOwned, IntoDeserializer};
 use snell::scene::{Scene, Step};
 use std::mem::take;
+use std::sync::LazyLock;
 use toml_edit::{Array, DocumentMut, Item, Key, TableLike, Value};
 
 /// Changes one value of a scene, and returns its place there.
@@ -26,14 +27,31 @@ pub fn set(scene: &mut Scene, change: &str) -> Result<Vec<Step>, Report> {
         .map_err(|report| if report.place.is_some() { report } else { report.at(&source, 0..change.len()) })
 }
 
-fn set_in(scene: &mut Scene, change: &str) -> Result<Vec<Step>, Report> {
-    // The first `=` outside quotes: names may hold one.
-    let mut quoted = false;
-    let equals = change.char_indices().find(|&(_, c)| {
-        quoted ^= c == '"';
-        c == '=' && !quoted
+/// The keys of a change, without their quotes; none if it is no change.
+pub fn keys(change: &str) -> Vec<String> {
+    let keys = split(change).and_then(|(key, _)| Key::parse(key.trim()).ok()).unwrap_or_default();
+    keys.iter().map(|key| key.get().to_owned()).collect()
+}
+
+/// At the first `=` outside quotes: names may hold one.
+fn split(change: &str) -> Option<(&str, &str)> {
+    let mut quoted = None;
+    let equals = change.char_indices().find(|&(_, c)| match quoted {
+        None if c == '"' || c == '\'' => {
+            quoted = Some(c);
+            false
+        }
+        Some(quote) if c == quote => {
+            quoted = None;
+            false
+        }
+        quoted => c == '=' && quoted.is_none(),
     });
-    let Some((key, value)) = equals.map(|(i, _)| (&change[..i], &change[i + 1..])) else {
+    equals.map(|(i, _)| (&change[..i], &change[i + 1..]))
+}
+
+fn set_in(scene: &mut Scene, change: &str) -> Result<Vec<Step>, Report> {
+    let Some((key, value)) = split(change) else {
         let help = "write KEY=VALUE, like --set material.glass.eta=2.42";
         return Err(Report::error(format!("`--set {change}` has no `=`")).help(help));
     };
@@ -125,9 +143,9 @@ impl Change<'_> {
 
     /// Of everything that is there once.
     fn of_settings(&self, scene: &mut Scene) -> Result<Vec<Step>, Report> {
-        let known = schema_keys();
+        let known = &*SCHEMA_KEYS;
         if !known.iter().any(|key| key == self.first) {
-            let report = unknown(self.first, self.first, &known);
+            let report = unknown(self.first, self.first, known);
             return Err(match named(scene, self.first) {
                 Some(list) => report.help(format!("did you mean `{list}.{}`?", self.first)),
                 None => report,
@@ -206,11 +224,11 @@ fn named(scene: &Scene, name: &str) -> Option<&'static str> {
 }
 
 /// The keys of a scene.
-fn schema_keys() -> Vec<String> {
+static SCHEMA_KEYS: LazyLock<Vec<String>> = LazyLock::new(|| {
     let schema = schemars::schema_for!(Scene);
     let properties = schema.get("properties").and_then(|p| p.as_object());
     properties.into_iter().flat_map(|p| p.keys().cloned()).collect()
-}
+});
 
 /// Where a value can be put.
 enum Place<'a> {

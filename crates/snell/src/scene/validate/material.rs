@@ -12,7 +12,8 @@ const MAX_TERMS: usize = 8;
 pub(super) fn materials(scene: &Scene, found: &mut Findings) {
     for (name, m) in &scene.materials {
         let at = |key: &str| place!["material", name.as_str(), key];
-        for (key, value) in [("ka", m.ka), ("kd", m.kd), ("ks", m.ks), ("kr", m.kr), ("ko", m.ko)] {
+        let colors = [("ka", m.ka), ("kd", m.kd), ("ks", m.ks), ("kr", m.kr), ("ko", m.ko), ("emission", m.emission)];
+        for (key, value) in colors {
             found.color(&at(key), value);
             if let Some(below) = value.to_array().into_iter().find(|&v| v < 0.0) {
                 let what = match key {
@@ -28,7 +29,6 @@ pub(super) fn materials(scene: &Scene, found: &mut Findings) {
             found.warning(WarningCode::OpacityAboveOne, at("ko"), message);
         }
         found.not_negative(at("spow"), m.spow, "an exponent");
-        found.color(&at("emission"), m.emission);
         absorption(found, &at, m);
         dispersion(scene, found, &at, m);
         if let Some(thickness) = m.thickness {

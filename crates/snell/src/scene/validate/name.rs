@@ -35,5 +35,6 @@ pub(super) fn names(scene: &Scene, found: &mut Findings) {
 
 /// A character that steers a terminal, or changes the direction in which the rest of a line is read (UAX #9).
 pub fn is_unprintable(c: char) -> bool {
-    c.is_control() || matches!(c, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+    c.is_control()
+        || matches!(c, '\u{061c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }
