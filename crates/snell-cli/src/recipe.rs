@@ -71,12 +71,12 @@ pub struct Recipe {
     /// Models that the scene reads, in the order of reading, and their content.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub models: Vec<ModelFile>,
-    /// Settings that nobody asked for: they are what the defaults were when the picture was made.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub defaults: Vec<String>,
-    /// Is it from when pictures did not remember the settings that nobody asked for?
+    /// Did nobody ask for these shadows? They are what the default was when the picture was made.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    default_shadows: bool,
+    /// Is it from when pictures did not remember the shadows that nobody asked for, or where the image plane stood?
     #[serde(skip)]
-    is_old: bool,
+    is_old: [bool; 2],
     /// SHA-256 of the finished film's numbers.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub film_sha256: Option<String>,
@@ -175,8 +175,8 @@ impl Recipe {
                 .iter()
                 .map(|m| ModelFile { path: absolute(&m.path), sha256: m.sha256.clone() })
                 .collect(),
-            defaults: Vec::new(),
-            is_old: false,
+            default_shadows: false,
+            is_old: [false; 2],
             film_sha256: None,
         };
         recipe.change(changes);
@@ -192,7 +192,7 @@ impl Recipe {
         let mut recipe: Self = serde_json::from_str(&remembered).map_err(|e| {
             Failure::new(FAILED, Report::error(format!("the recipe in `{}` cannot be read: {e}", path.display())))
         })?;
-        recipe.is_old = recipe.seed.is_none();
+        recipe.is_old = [recipe.shadows.is_none(), recipe.near.is_none()];
         Ok(recipe)
     }
 
@@ -218,6 +218,7 @@ impl Recipe {
         self.spp = changes.spp.or(self.spp);
         self.depth = changes.depth.or(self.depth);
         self.integrator = changes.integrator.or(self.integrator);
+        self.default_shadows &= changes.shadows.is_none();
         self.shadows = changes.shadows.or(self.shadows);
         self.transfer = changes.transfer.or(self.transfer);
         self.rounding = changes.rounding.or(self.rounding);
@@ -229,9 +230,7 @@ impl Recipe {
 
     /// What another model of light does about shadows, if nobody says, is another thing.
     fn forget_default_shadows(&mut self) {
-        if self.defaults.iter().any(|name| name == "shadows") {
-            self.shadows = None;
-        }
+        self.shadows = self.shadows.filter(|_| !self.default_shadows);
     }
 
     /// Lets a change of the scene decide what the recipe remembers of its settings.
@@ -303,8 +302,7 @@ impl Recipe {
     /// Takes over what the settings of the scene have come to.
     pub fn resolve(&mut self, scene: &Scene) {
         let render = &scene.render;
-        let given = [("shadows", self.shadows.is_some()), ("spp", self.spp.is_some()), ("depth", self.depth.is_some())];
-        self.defaults = given.into_iter().filter(|(_, given)| !given).map(|(name, _)| name.to_owned()).collect();
+        self.default_shadows |= self.shadows.is_none();
         self.near = Some(scene.camera.image_plane());
         self.spp = Some(render.spp);
         self.seed = Some(render.seed);
@@ -322,17 +320,15 @@ impl Recipe {
     pub fn keep_old_defaults(&mut self, scene: &Scene) -> Vec<&'static str> {
         let integrator = self.integrator.unwrap_or(scene.render.integrator);
         let mut notes = Vec::new();
-        if !self.is_old {
-            return notes;
-        }
-        if integrator == Integrator::Whitted && self.shadows.or(scene.render.shadows).is_none() {
+        let [old_shadows, old_plane] = self.is_old;
+        if old_shadows && integrator == Integrator::Whitted && self.shadows.or(scene.render.shadows).is_none() {
             self.shadows = Some(Shadows::Opaque);
             notes.push(
                 "the picture was made when `whitted` had opaque shadows by default, and gets them again; the default is `tinted` \
                  now: to have that, render its scene (`snell info --scene` prints it) with --shadows tinted",
             );
         }
-        if !integrator.starts_at_eye() && self.near.or(scene.camera.near).is_none() {
+        if old_plane && !integrator.starts_at_eye() && self.near.or(scene.camera.near).is_none() {
             self.near = Some(-1.0);
             notes.push(
                 "the picture was made when the image plane stood at `near` = -1 by default, and stands there again; the default is \

@@ -340,7 +340,7 @@ fn short_hash(hash: &str) -> &str {
 /// Says what is odd about a scene.
 fn warn(reports: &[Report], args: &RenderArgs) {
     match args.progress {
-        ProgressKind::Json if args.quiet => {}
+        _ if args.quiet => {}
         ProgressKind::Json => {
             let (warnings, more, _) = say::shown(reports);
             for line in more {
@@ -355,7 +355,6 @@ fn warn(reports: &[Report], args: &RenderArgs) {
                 tell(&json!({ "event": "warning", "code": code, "message": message, "place": place }).to_string());
             }
         }
-        ProgressKind::Auto if args.quiet => {}
         ProgressKind::Auto => say::reports(reports),
     }
 }

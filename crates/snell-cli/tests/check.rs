@@ -130,7 +130,11 @@ fn scenes_take_ply_and_stl_models() {
     run(at, &["diff", "t.STL.npy", "t.obj.npy"]);
     fs::write(at.join("t.xyz"), "").unwrap();
     let other = snell(at, &["render", "t.xyz.toml", "-o", "x.npy"]);
-    assert!(other.status.code() == Some(3) && stderr(&other).contains(".obj, .ply or .stl"), "{}", stderr(&other));
+    assert!(
+        other.status.code() == Some(3) && stderr(&other).contains("models are OBJ, PLY or STL"),
+        "{}",
+        stderr(&other)
+    );
     assert!(stderr(&other).contains("t.xyz.toml:14:8"), "{}", stderr(&other));
 }
 

@@ -764,7 +764,7 @@ fn a_converted_scene_is_the_same_scene_anywhere() {
     // The names are made of the content: another mesh takes nobody's place, and what has the name is not written over.
     let meshes = || {
         let names = fs::read_dir(at.join("sub")).unwrap().flatten().map(|e| e.file_name().into_string().unwrap());
-        names.filter(|name| name.ends_with(".ply")).collect::<Vec<_>>()
+        names.filter(|name| name.contains("-mesh-")).collect::<Vec<_>>()
     };
     let [mesh] = &meshes()[..] else { panic!("{:?}", meshes()) };
     let scale =

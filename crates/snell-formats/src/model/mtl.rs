@@ -308,7 +308,7 @@ mod tests {
         let (_, warnings) =
             parse_mtl(&Source::new("m.mtl", "newmtl a\nTf .5 1 1\nPm 1\nillum 7\nPm 0\nNi -3\nd -halo 1\n")).unwrap();
         assert!(
-            warnings.len() == 1 && warnings[0].message.contains("`Tf`, `Pm`, `illum 7`, `Ni -3`, `d -halo`"),
+            warnings.len() == 1 && warnings[0].message.contains("`Tf`, `Pm`, `illum 7`, `Ni -3`, `d -halo 1`"),
             "{warnings:?}"
         );
         // What was never looked at before is no reason to refuse a model.
