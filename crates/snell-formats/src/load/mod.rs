@@ -328,8 +328,10 @@ impl Loaded {
 
     /// Problems of the scene, each at its place in the text.
     pub fn reports(&self, problems: &[Problem]) -> Vec<Report> {
-        let report =
-            |problem: &Problem| Report { help: problem.help.clone(), ..Report::error(problem.message.clone()) };
+        let report = |problem: &Problem| {
+            let report = Report::error(problem.message.clone());
+            problem.help.iter().fold(report, |report, help| report.help(help.as_str()))
+        };
         self.places.put_all(problems.iter().map(|problem| (report(problem), problem.place.as_slice())).collect())
     }
 

@@ -107,8 +107,8 @@ fn json_range(text: &str, line: usize, column: usize) -> Range<usize> {
 
 /// Puts a problem of a scene at its place in the text.
 pub fn report(problem: &Problem, source: &Source, syntax: Syntax) -> Report {
-    let mut report = Report::error(problem.message.clone());
-    report.help.clone_from(&problem.help);
+    let report = Report::error(problem.message.clone());
+    let report = problem.help.iter().fold(report, |report, help| report.help(help.as_str()));
     match places(&[&problem.place], source, syntax).pop().flatten() {
         Some(range) => report.at(source, range),
         None => report,
