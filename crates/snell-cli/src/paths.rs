@@ -4,7 +4,6 @@ use crate::args::{ProgressKind, RenderArgs};
 use crate::output;
 use crate::progress::Reporter;
 use crate::recipe::Recipe;
-use crate::render::same_film;
 use crate::say::{FAILED, Failure, Outcome, USAGE, tell};
 use snell::explain::{Path as Way, layers, only};
 use snell::film::transfer::Encoding;
@@ -49,7 +48,7 @@ pub fn run(
         let encoding = Encoding { transfer: world.render.transfer, rounding: world.render.rounding };
         let text = remembered(&mut recipe, &film);
         output::write(output, |out| picture::write_to(out, format, &film, encoding, Some(&text)))?;
-        return same_film(before.as_deref(), &recipe);
+        return recipe.same_film(before.as_deref());
     }
     let most = recipe.paths.unwrap_or_default() as usize;
     let split = layers(world, &loaded.scene, most, &options).unwrap_or_default();
@@ -68,7 +67,7 @@ pub fn run(
     let text = remembered(&mut recipe, &whole);
     output::write(output, |out| picture::write_layers_to(out, [width, height], &whole.pixels, &named, Some(&text)))?;
     say(args, &format!("{}: {} layers that add up to the picture", output::shown(output), named.len()));
-    same_film(before.as_deref(), &recipe)
+    recipe.same_film(before.as_deref())
 }
 
 /// What the file remembers.

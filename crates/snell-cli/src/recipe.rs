@@ -2,7 +2,7 @@
 
 use crate::args::{ExplainArgs, ReadingArgs, RenderArgs};
 use crate::input;
-use crate::say::{FAILED, Failure, OrFail, SCENE};
+use crate::say::{FAILED, Failure, OrFail, Outcome, SCENE};
 use serde::{Deserialize, Serialize};
 use snell::explain::text::six_digits;
 use snell::film::Crop;
@@ -299,6 +299,19 @@ impl Recipe {
         Err(Failure::new(SCENE, Report::error(message).help(help)))
     }
 
+    /// Fails if a picture that was made again is another one.
+    pub fn same_film(&self, before: Option<&str>) -> Outcome {
+        if let (Some(before), Some(now)) = (before, &self.film_sha256)
+            && before != now
+        {
+            let message =
+                format!("the picture is not the same: film {} before, {} now", short_hash(before), short_hash(now));
+            let help = format!("it was made by Snell {}", self.snell);
+            return Err(Failure::new(FAILED, Report::error(message).help(help)));
+        }
+        Ok(())
+    }
+
     /// Takes over what the settings of the scene have come to.
     pub fn resolve(&mut self, scene: &Scene) {
         let render = &scene.render;
@@ -363,6 +376,11 @@ impl Recipe {
             size[0], size[1]
         ))
     }
+}
+
+/// The first digits of a hash, for people.
+pub fn short_hash(hash: &str) -> &str {
+    hash.get(..12).unwrap_or(hash)
 }
 
 /// A path that a picture can remember, as text.

@@ -5,7 +5,7 @@ use crate::input::{self, what_is};
 use crate::output::{self, beside, is_standard, refuse_inputs};
 use crate::paths;
 use crate::progress::{Phase, Reporter, short};
-use crate::recipe::{Changes, Recipe};
+use crate::recipe::{Changes, Recipe, short_hash};
 use crate::say::{self, FAILED, Failure, INTERRUPTED, OrFail, Outcome, SCENE, USAGE, tell};
 use crate::signals;
 use serde_json::json;
@@ -292,20 +292,7 @@ fn one(name: &str, args: &RenderArgs, output: &Path, inputs: &mut Vec<PathBuf>) 
     if !finished {
         return Err(Failure { code: INTERRUPTED, reports: Vec::new() });
     }
-    same_film(before.as_deref(), &recipe)
-}
-
-/// Fails if a picture that was made again is another one.
-pub fn same_film(before: Option<&str>, recipe: &Recipe) -> Outcome {
-    if let (Some(before), Some(now)) = (before, &recipe.film_sha256)
-        && before != now
-    {
-        let message =
-            format!("the picture is not the same: film {} before, {} now", short_hash(before), short_hash(now));
-        let help = format!("it was made by Snell {}", recipe.snell);
-        return Err(Failure::new(FAILED, Report::error(message).help(help)));
-    }
-    Ok(())
+    recipe.same_film(before.as_deref())
 }
 
 /// The picture could not be written where it should go: it is kept elsewhere if possible, so that no work is lost.
@@ -330,11 +317,6 @@ fn rescue(
         Ok(()) => report.help(format!("the picture is kept as {}", elsewhere.display())),
         Err(_) => report,
     }
-}
-
-/// The first digits of a hash, for people.
-fn short_hash(hash: &str) -> &str {
-    hash.get(..12).unwrap_or(hash)
 }
 
 /// Says what is odd about a scene.

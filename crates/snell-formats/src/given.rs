@@ -1,6 +1,5 @@
 //! What a file is, by its content and its name: for those who give a command a file that it does not take.
 
-use crate::model::is_binary_stl;
 use crate::report::Report;
 use crate::text::{decode, looks_like_text};
 use std::path::Path;
@@ -90,6 +89,12 @@ pub fn given(path: &Path, bytes: &[u8]) -> Given {
     text_of_a_kind(&start.text)
         .or_else(|| ENDINGS.iter().find(|(known, _)| *known == ending).map(|(_, known)| *known))
         .unwrap_or(Given::Text)
+}
+
+/// Do these bytes have just the length that a binary STL of their number of triangles has: 84, and 50 for each?
+pub(crate) fn is_binary_stl(bytes: &[u8]) -> bool {
+    let count = bytes.get(80..84).and_then(|b| b.try_into().ok()).map_or(0, u32::from_le_bytes);
+    count > 0 && 84 + 50 * u64::from(count) == bytes.len() as u64
 }
 
 /// So much of a text is looked at.

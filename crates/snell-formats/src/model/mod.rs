@@ -12,7 +12,6 @@ pub use mtl::{Mirror, MtlMaterial, MtlRule, parse_mtl};
 pub use obj::parse_obj;
 pub use ply::parse_ply;
 pub use search::{Found, find, find_in, places};
-pub(crate) use stl::is_binary_stl;
 pub use stl::parse_stl;
 pub use write::{write_obj, write_ply};
 

@@ -1,6 +1,7 @@
 //! STL, binary and text: triangles and nothing else.
 
 use super::{Model, not_drawn, without_materials};
+use crate::given::is_binary_stl;
 use crate::report::{Report, Source};
 use crate::text::{decode, looks_like_text};
 use crate::words::{Word, number, words};
@@ -31,11 +32,6 @@ pub fn parse_stl(name: &str, bytes: &[u8]) -> Result<Model, Report> {
         return Err(Report::error(format!("`{name}` has no triangles")));
     }
     Ok(Model { mesh: without_materials(mesh), warnings: warning.into_iter().collect(), ..Model::default() })
-}
-
-/// Do these bytes have just the length that their number of triangles wants?
-pub(crate) fn is_binary_stl(bytes: &[u8]) -> bool {
-    promised(bytes).is_some_and(|count| count > 0 && size(count) == bytes.len() as u64)
 }
 
 /// The number of triangles that the head of a binary file promises.

@@ -43,8 +43,12 @@ fn remember(attributes: &mut LayerAttributes, recipe: Option<&str>) {
     }
 }
 
-/// One EXR layer for each; the first one remembers.
-pub(super) fn write_layers(
+/// Writes layers of a picture by their names as EXR, first the picture itself; each has the channels R, G and B. All have
+/// `size[0]·size[1]` pixels, row by row. `recipe` is kept, as in [`write()`].
+///
+/// # Errors
+/// When writing fails.
+pub fn write_layers(
     out: &mut dyn Out,
     size: [u32; 2],
     picture: &[Rgb],

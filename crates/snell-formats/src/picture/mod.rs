@@ -5,6 +5,8 @@ mod npy;
 mod png;
 mod ppm;
 
+pub use exr::write_layers as write_layers_to;
+
 use crate::disk::{self, Out};
 use crate::report::{Report, nearest};
 use snell::film::transfer::Encoding;
@@ -103,21 +105,6 @@ pub fn png_bytes(film: &Film, encoding: Encoding, recipe: Option<&str>) -> Resul
     png::write(&mut bytes, film, encoding, false, recipe)
         .map_err(|e| Report::error(format!("the picture cannot become a PNG: {e}")))?;
     Ok(bytes)
-}
-
-/// Writes layers of a picture by their names as EXR, first the picture itself; each has the channels R, G and B. All have
-/// `size[0]·size[1]` pixels, row by row. `recipe` is kept, as in [`write()`].
-///
-/// # Errors
-/// When writing fails.
-pub fn write_layers_to(
-    out: &mut dyn Out,
-    size: [u32; 2],
-    picture: &[Rgb],
-    layers: &[(String, Vec<Rgb>)],
-    recipe: Option<&str>,
-) -> std::io::Result<()> {
-    exr::write_layers(out, size, picture, layers, recipe)
 }
 
 /// A picture that was read, with pixels of some kind.
