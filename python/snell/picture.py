@@ -127,7 +127,8 @@ class Picture:
     def remarks(self) -> list[str]:
         """What rendering has come upon, in words: light that was not followed, solids that overlap or are open.
 
-        ``docs/warnings.md`` lists them. Of all but lost light (W202) and black pictures (W203) `Scene.render` warns, too.
+        ``docs/warnings.md`` lists them. Of all but lost light (W202) and black pictures (W203) `Scene.render` warns,
+        too.
         """
         return [text for _, text in self._native.warnings()]
 
