@@ -188,7 +188,7 @@ def test_channels_of_a_part_are_a_part_of_them() -> None:
     x, y = 24, 37  # the green ball in the glass
     assert picture.channels.hits[y, x] == sum(node.hit is not None for node in picture.explain(x, y).nodes)
     assert struct.unpack(">II", picture.channels._repr_png_()[16:24]) == (4 * 64, 64)
-    with pytest.raises(snell.PictureError, match="Known here: glass, red, green, blue"):
+    with pytest.raises(snell.PictureError, match="objects: glass, red, green, blue"):
         picture.channels.mask("gras")
 
 
