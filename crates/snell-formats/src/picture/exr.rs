@@ -44,7 +44,7 @@ fn remember(attributes: &mut LayerAttributes, recipe: Option<&str>) {
 }
 
 /// Writes layers of a picture by their names as EXR, first the picture itself; each has the channels R, G and B. All have
-/// `size[0]·size[1]` pixels, row by row. `recipe` is kept, as in [`write()`].
+/// `size[0]·size[1]` pixels, row by row. `recipe` is kept, as in other pictures.
 ///
 /// # Errors
 /// When writing fails.

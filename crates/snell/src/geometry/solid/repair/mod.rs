@@ -5,7 +5,7 @@
 //! turned outward; vertices that no face uses go. What is already right is left as it is, so that repairing twice is
 //! repairing once. Faces keep their materials and texture coordinates; those that fill holes have no texture coordinates.
 //!
-//! Each step is tried, and undone if it leaves the mesh [worse](faults) than it was.
+//! Each step is tried, and undone if it leaves the mesh worse than it was (`faults`).
 
 mod faces;
 mod faults;
@@ -122,7 +122,7 @@ const STEPS: [(Step, Mend); 6] = [
 
 /// A mended mesh, and what was done to it. What cannot be mended is left, and [`check`](super::check) says of it.
 ///
-/// The mended mesh has no more [faults](faults) than the mesh, and a solid stays one.
+/// The mended mesh has no more faults than the mesh, and a solid stays one.
 pub fn repair(mesh: &TriangleMesh, options: &Options) -> (TriangleMesh, RepairLog) {
     let (mut mesh, mut done) = (mesh.clone(), RepairLog::default());
     // Nothing of this changes what the surface is.
