@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Fuzzes the command with files that are nearly right, and every reader with libFuzzer, on the stable compiler. SECONDS_EACH: how long, 60 if not given.
+# Fuzzes the command with files that are nearly right, and every reader with libFuzzer, on the stable compiler.
+# SECONDS_EACH: how long, 60 if not given.
 source "$(dirname "$0")/lib.sh"
 
 need_rust

@@ -21,18 +21,18 @@ pub fn run(args: &CheckArgs) -> Outcome {
         may_write(output, path, args.force)?;
     }
     let named = path.extension().is_some_and(|e| ["obj", "ply", "stl"].iter().any(|m| e.eq_ignore_ascii_case(m)));
-    match what_is(&args.model) {
-        Given::Model(_) => one_model(args, path),
-        _ if named => one_model(args, path),
-        Given::Foreign(what, help) => {
-            let report = Report::error(format!("`{}` is {what}, which Snell does not read", args.model));
-            Err(Failure::new(SCENE, report.help(help)))
-        }
-        Given::Picture(what) => {
-            Err(Failure::new(SCENE, Report::error(format!("`{}` is {what}, not a model", args.model))))
-        }
-        _ => all_meshes(args),
+    let given = what_is(&args.model);
+    if named || matches!(given, Given::Model(_)) {
+        return one_model(args, path);
     }
+    if let Some(report) = given.not_read(&args.model) {
+        return Err(Failure::new(SCENE, report));
+    }
+    if let Given::Picture(format) = given {
+        let report = Report::error(format!("`{}` is {}, not a model", args.model, format.words()));
+        return Err(Failure::new(SCENE, report));
+    }
+    all_meshes(args)
 }
 
 fn one_model(args: &CheckArgs, path: &Path) -> Outcome {

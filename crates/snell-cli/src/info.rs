@@ -20,17 +20,16 @@ use std::io::IsTerminal;
 use std::path::Path;
 
 pub fn run(args: &InfoArgs) -> Outcome {
-    match what_is(&args.file) {
-        Given::Picture(_) => return about_picture(&picture::read(Path::new(&args.file)).or_fail(FAILED)?, args),
-        Given::Foreign(what, help) => {
-            let report = Report::error(format!("`{}` is {what}, which Snell does not read", args.file));
-            return Err(Failure::new(SCENE, report.help(help)));
-        }
-        _ => {}
+    let given = what_is(&args.file);
+    if let Given::Picture(_) = given {
+        return about_picture(&picture::read(Path::new(&args.file)).or_fail(FAILED)?, args);
+    }
+    if let Some(report) = given.not_read(&args.file) {
+        return Err(Failure::new(SCENE, report));
     }
     if args.scene && Path::new(&args.file).is_file() {
         // Not what it needs besides, which may not be there.
-        if let Some(report) = what_is(&args.file).no_scene(&args.file) {
+        if let Some(report) = given.no_scene(&args.file) {
             return Err(Failure::new(SCENE, report));
         }
         let bytes = disk::read(Path::new(&args.file), disk::MAX_SCENE_BYTES).or_fail(SCENE)?;

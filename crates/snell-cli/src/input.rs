@@ -1,8 +1,8 @@
-//! What a command is given: a scene, by any name or on standard input, or a picture that knows its scene.
+//! What a command is given: a scene, by any name or on standard input, and whether a file is something else.
 
 use crate::output::STANDARD;
 use crate::say::{FAILED, Failure, OrFail, SCENE};
-use snell_formats::given::{Given, given};
+use snell_formats::given::{Given, given_file};
 use snell_formats::load::{Loaded, load_bytes};
 use snell_formats::{LoadOptions, Report, disk, load};
 use std::io::Read;
@@ -37,7 +37,5 @@ pub fn what_is(name: &str) -> Given {
     if name == STANDARD || !path.is_file() {
         return Given::Text;
     }
-    let mut start = Vec::new();
-    let read = std::fs::File::open(path).and_then(|file| file.take(4096).read_to_end(&mut start));
-    if read.is_ok() { given(path, &start) } else { Given::Text }
+    given_file(path)
 }

@@ -198,8 +198,8 @@ fn read(name: &str, args: &RenderArgs) -> Result<(Recipe, Loaded), Failure> {
 
 /// A picture knows its scene, but whoever gives one instead of a scene may not mean that.
 fn refuse_picture(name: &str) -> Outcome {
-    let Given::Picture(what) = what_is(name) else { return Ok(()) };
-    let report = Report::error(format!("`{name}` is {what}, not a scene"));
+    let Given::Picture(format) = what_is(name) else { return Ok(()) };
+    let report = Report::error(format!("`{name}` is {}, not a scene", format.words()));
     let help = format!("if Snell made it, this makes it again, with changes or without: snell render --from {name}");
     Err(Failure::new(SCENE, report.help(help)))
 }

@@ -146,7 +146,7 @@ fn files_of_the_wrong_kind() {
     }
     for (input, words) in [
         ("model.obj", "OBJ model"),
-        ("solid.stl", "binary STL"),
+        ("solid.stl", "STL model"),
         ("a.glb", "glTF"),
         ("scene.png", "snell render --from"),
         ("a.jpg", "JPEG"),

@@ -172,10 +172,8 @@ fn shortened(name: &str) -> String {
     }
 }
 
-/// As XML has it, which knows no control characters.
+/// As XML 1.0 has it, which knows no control characters, no U+FFFE and no U+FFFF.
 fn plain(text: &str) -> String {
-    let text: String = text.chars().filter(|c| !c.is_control()).collect();
-    // XML 1.0 has no control characters and no U+FFFE and U+FFFF.
     let odd = |c: char| is_unprintable(c) || matches!(c, '\u{fffe}' | '\u{ffff}');
     text.replace(odd, "\u{fffd}").replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }

@@ -2,17 +2,20 @@
 
 use crate::report::Report;
 use crate::text::{decode, looks_like_text};
+use crate::{model, picture};
+use std::fs::File;
+use std::io::Read;
 use std::path::Path;
 
 /// What somebody has given.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Given {
     /// A model that Snell reads.
-    Model(&'static str),
+    Model(model::Format),
     /// A library of materials, which models name.
     Materials,
     /// A picture that Snell reads.
-    Picture(&'static str),
+    Picture(picture::Format),
     /// Something known that Snell does not read, and what to do with it.
     Foreign(&'static str, &'static str),
     /// A text; whether it is a scene shows when it is read.
@@ -24,14 +27,12 @@ pub enum Given {
 const MAKE_OBJ: &str = "export it as OBJ or PLY, and name that in a scene";
 const MAKE_PNG: &str = "convert it to PNG, like: magick picture.jpg picture.png";
 const UNPACK: &str = "unpack it first";
+const WRITE_ANEW: &str = "write it anew as a scene of Snell: docs/scenes.md shows how";
 
 /// How binary files start.
 const MAGIC: &[(&[u8], Given)] = &[
-    (b"\x89PNG\r\n\x1a\n", Given::Picture("a PNG picture")),
-    (b"\x76\x2f\x31\x01", Given::Picture("an EXR picture")),
-    (b"\x93NUMPY", Given::Picture("a NumPy array")),
-    (b"ply\n", Given::Model("a PLY model")),
-    (b"ply\r", Given::Model("a PLY model")),
+    (b"ply\n", Given::Model(model::Format::Ply)),
+    (b"ply\r", Given::Model(model::Format::Ply)),
     (b"glTF", Given::Foreign("a glTF model", MAKE_OBJ)),
     (b"Kaydara FBX", Given::Foreign("an FBX model", MAKE_OBJ)),
     (b"BLENDER", Given::Foreign("a Blender file", MAKE_OBJ)),
@@ -48,34 +49,39 @@ const MAGIC: &[(&[u8], Given)] = &[
 
 /// What texts are whose first lines look like anything.
 const ENDINGS: &[(&str, Given)] = &[
-    ("obj", Given::Model("a Wavefront OBJ model")),
-    ("stl", Given::Model("an STL model")),
-    ("ply", Given::Model("a PLY model")),
+    ("obj", Given::Model(model::Format::Obj)),
+    ("stl", Given::Model(model::Format::Stl)),
+    ("ply", Given::Model(model::Format::Ply)),
     ("mtl", Given::Materials),
     ("gltf", Given::Foreign("a glTF model", MAKE_OBJ)),
     ("fbx", Given::Foreign("an FBX model", MAKE_OBJ)),
     ("dae", Given::Foreign("a Collada model", MAKE_OBJ)),
     ("usd", Given::Foreign("a USD scene", MAKE_OBJ)),
     ("usda", Given::Foreign("a USD scene", MAKE_OBJ)),
-    ("pov", Given::Foreign("a POV-Ray scene", "write it anew as a scene of Snell: docs/scenes.md shows how")),
-    ("pbrt", Given::Foreign("a pbrt scene", "write it anew as a scene of Snell: docs/scenes.md shows how")),
-    ("xml", Given::Foreign("an XML file", "write it anew as a scene of Snell: docs/scenes.md shows how")),
+    ("pov", Given::Foreign("a POV-Ray scene", WRITE_ANEW)),
+    ("pbrt", Given::Foreign("a pbrt scene", WRITE_ANEW)),
+    ("xml", Given::Foreign("an XML file", WRITE_ANEW)),
     ("ipynb", Given::Foreign("a notebook", "open it in Jupyter")),
     ("py", Given::Foreign("a Python program", "run it with python")),
 ];
+
+/// What a file is, by its first bytes and its name; a text, if it cannot be read.
+pub fn given_file(path: &Path) -> Given {
+    let mut start = Vec::new();
+    let read = File::open(path).and_then(|file| file.take(START as u64).read_to_end(&mut start));
+    if read.is_ok() { given(path, &start) } else { Given::Text }
+}
 
 /// What a file of this name with these bytes is.
 pub fn given(path: &Path, bytes: &[u8]) -> Given {
     if let Some((_, known)) = MAGIC.iter().find(|(magic, _)| bytes.starts_with(magic)) {
         return *known;
     }
-    if let [b'P', b'3' | b'6', space, ..] = bytes
-        && space.is_ascii_whitespace()
-    {
-        return Given::Picture("a PPM picture");
+    if let Some(format) = picture::Format::in_bytes(bytes) {
+        return Given::Picture(format);
     }
     if is_binary_stl(bytes) {
-        return Given::Model("a binary STL model");
+        return Given::Model(model::Format::Stl);
     }
     let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
     if !looks_like_text(bytes) {
@@ -110,11 +116,9 @@ fn text_of_a_kind(text: &str) -> Option<Given> {
             && line.contains(char::is_whitespace)
     };
     match () {
-        () if lower.starts_with("ply\n") => Some(Given::Model("a PLY model")),
-        () if lower.starts_with("solid") && lower.contains("facet") => Some(Given::Model("an STL model")),
-        () if lower.starts_with('<') => {
-            Some(Given::Foreign("an XML file", "write it anew as a scene of Snell: docs/scenes.md shows how"))
-        }
+        () if lower.starts_with("ply\n") => Some(Given::Model(model::Format::Ply)),
+        () if lower.starts_with("solid") && lower.contains("facet") => Some(Given::Model(model::Format::Stl)),
+        () if lower.starts_with('<') => Some(Given::Foreign("an XML file", WRITE_ANEW)),
         () if lower.starts_with("off\n") => Some(Given::Foreign("an OFF model", MAKE_OBJ)),
         () if lower.starts_with('{') && lower.contains("\"asset\"") && !lower.contains("\"snell\"") => {
             Some(Given::Foreign("a glTF model", MAKE_OBJ))
@@ -127,7 +131,7 @@ fn text_of_a_kind(text: &str) -> Option<Given> {
         () if lines.clone().any(|line| keyword(line) == "v" && line.split_whitespace().count() >= 4)
             && lines.all(of_obj) =>
         {
-            Some(Given::Model("a Wavefront OBJ model"))
+            Some(Given::Model(model::Format::Obj))
         }
         () => None,
     }
@@ -136,39 +140,43 @@ fn text_of_a_kind(text: &str) -> Option<Given> {
 impl Given {
     /// Why this is no scene, and what to do with it; `None` for what may be one.
     pub fn no_scene(self, shown: &str) -> Option<Report> {
-        let (what, help) = match self {
+        let help = match self {
             Self::Text => return None,
-            Self::Model(what) => (
-                what,
-                format!(
-                    "name it in a scene: `[[mesh]]` with `file = \"{shown}\"` (docs/scenes.md has a whole one); \
-                     `snell check {shown}` says whether it is a solid"
-                ),
+            Self::Model(_) => format!(
+                "name it in a scene: `[[mesh]]` with `file = \"{shown}\"` (docs/scenes.md has a whole one); \
+                 `snell check {shown}` says whether it is a solid"
             ),
-            Self::Materials => ("a library of materials", "name the model that uses it in a scene".to_owned()),
-            Self::Picture(what) => (
-                what,
-                format!(
-                    "`snell info {shown}` says how it was made, and `snell render --from {shown}` makes it again, if Snell made it"
-                ),
+            Self::Materials => "name the model that uses it in a scene".to_owned(),
+            Self::Picture(_) => format!(
+                "`snell info {shown}` says how it was made, and `snell render --from {shown}` makes it again, if Snell made it"
             ),
-            Self::Foreign(what, help) => (what, help.to_owned()),
-            Self::Bytes => {
-                ("binary data", "scenes are text files: TOML, JSON, drivers of the course, or NFF".to_owned())
-            }
+            Self::Foreign(_, help) => help.to_owned(),
+            Self::Bytes => "scenes are text files: TOML, JSON, drivers of the course, or NFF".to_owned(),
         };
-        let report = Report::error(format!("`{shown}` is {what}, not a scene"));
-        Some(if help.is_empty() { report } else { report.help(help) })
+        let what = self.words().unwrap_or("binary data");
+        Some(with_help(Report::error(format!("`{shown}` is {what}, not a scene")), &help))
+    }
+
+    /// Says of what Snell does not read that it does not; `None` for all else.
+    pub fn not_read(self, shown: &str) -> Option<Report> {
+        let Self::Foreign(what, help) = self else { return None };
+        Some(with_help(Report::error(format!("`{shown}` is {what}, which Snell does not read")), help))
     }
 
     /// What it is, in words, if that is known.
     pub fn words(self) -> Option<&'static str> {
         match self {
-            Self::Model(what) | Self::Picture(what) | Self::Foreign(what, _) => Some(what),
+            Self::Model(format) => Some(format.words()),
+            Self::Picture(format) => Some(format.words()),
+            Self::Foreign(what, _) => Some(what),
             Self::Materials => Some("a library of materials"),
             Self::Text | Self::Bytes => None,
         }
     }
+}
+
+fn with_help(report: Report, help: &str) -> Report {
+    if help.is_empty() { report } else { report.help(help) }
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! Errors and warnings with a place in a file.
 
+use snell::scene::Problem;
 use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
@@ -83,6 +84,14 @@ impl fmt::Display for Report {
 impl std::error::Error for Report {}
 
 /// Where several things can be wrong, one of them.
+impl From<&Problem> for Report {
+    /// Without its place, which is one in a scene and not yet one in a text.
+    fn from(problem: &Problem) -> Self {
+        let report = Self::error(problem.message.as_str());
+        problem.help.iter().fold(report, |report, help| report.help(help.as_str()))
+    }
+}
+
 impl From<Report> for Vec<Report> {
     fn from(report: Report) -> Self {
         vec![report]

@@ -44,11 +44,15 @@ fn first_lost(text: &str) -> Option<usize> {
     })
 }
 
+/// Is it in UTF-16, by its byte order mark or by a zero beside each of its first characters?
+pub(crate) fn is_utf16(bytes: &[u8]) -> bool {
+    matches!(bytes, [0xff, 0xfe, ..] | [0xfe, 0xff, ..] | [1..=127, 0, 1..=127, 0, ..] | [0, 1..=127, 0, 1..=127, ..])
+}
+
 /// Does a file start like a text? Not with the zeros and control characters of binary formats.
 pub fn looks_like_text(bytes: &[u8]) -> bool {
     let start = &bytes[..bytes.len().min(1024)];
-    matches!(bytes, [0xff, 0xfe, ..] | [0xfe, 0xff, ..] | [1..=127, 0, 1..=127, 0, ..] | [0, 1..=127, 0, 1..=127, ..])
-        || !start.iter().any(|&b| b.is_ascii_control() && !b.is_ascii_whitespace() && b != 0x0b)
+    is_utf16(bytes) || !start.iter().any(|&b| b.is_ascii_control() && !b.is_ascii_whitespace() && b != 0x0b)
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! Pictures as textures.
 
+use crate::disk;
 use crate::picture::{self, Picture};
 use crate::report::Report;
 use snell::film::Rgb;
@@ -8,15 +9,33 @@ use snell::texture::Image;
 use std::path::Path;
 
 /// Reads a PNG (8 or 16 bit, gray, colour or palette), PPM, EXR or NPY picture of at most 2²⁶ pixels as a texture in linear
-/// light, with the alpha of PNG and EXR. Integers become 0 to 1; with `srgb` they are decoded by the curve of IEC 61966-2-1, as colours
-/// want it. What is no colour, like a map of heights, and what was written with `transfer = "linear"` want `srgb` off.
+/// light, with the alpha of PNG and EXR. Integers become 0 to 1; with `srgb` they are decoded by the curve of IEC 61966-2-1, as
+/// colours want it. What is no colour, like a map of heights, and what was written with `transfer = "linear"` want `srgb` off.
 /// Floating point numbers are taken as they are; of an EXR the first layer with red, green and blue, its data window. An EXR's
 /// colours are multiplied by its alpha, by its convention, and are divided by it here.
 ///
 /// # Errors
 /// When the file is not such a picture, is cut off or too large, or holds a number that is not finite as `f32`.
 pub fn read_image(path: &Path, srgb: bool) -> Result<Image, Report> {
-    let mut picture = picture::read_as(path, |max| {
+    read_with_hash(path, srgb).map(|(image, _)| image)
+}
+
+/// The same, with the SHA-256 of the file.
+///
+/// # Errors
+/// As [`read_image`].
+pub(crate) fn read_with_hash(path: &Path, srgb: bool) -> Result<(Image, String), Report> {
+    let advise = |report: Report| match report.help.clone() {
+        None if path.is_file() => report.help("save it again as .png, smaller if it is too large"),
+        Some(known) if path.is_file() => {
+            let (from, to) = (path.display(), path.with_extension("png"));
+            report.help(format!("{known}; convert others, for example: magick {from} {}", to.display()))
+        }
+        _ => report,
+    };
+    let bytes = disk::read(path, disk::MAX_MODEL_BYTES).map_err(advise)?;
+    let hash = disk::sha256([&bytes]);
+    let mut picture = picture::decode(path, &bytes, |max| {
         let linear = |code: u32, max: u32| {
             let value = f64::from(code) / f64::from(max);
             (if srgb { from_srgb(value) } else { value }) as f32
@@ -29,16 +48,11 @@ pub fn read_image(path: &Path, srgb: bool) -> Result<Image, Report> {
             })
         }
     })
-    .map_err(|report| match report.help.clone() {
-        None if path.is_file() => report.help("save it again as .png, smaller if it is too large"),
-        Some(known) if path.is_file() => {
-            let (from, to) = (path.display(), path.with_extension("png"));
-            report.help(format!("{known}; convert others, for example: magick {from} {}", to.display()))
-        }
-        _ => report,
-    })?;
-    let is_exr = picture.max.is_none();
-    if let Some(alpha) = picture.alpha.as_ref().filter(|_| is_exr) {
+    .map_err(advise)?;
+    drop(bytes);
+    // Of the formats with alpha, only EXR has no largest integer.
+    let is_premultiplied = picture.max.is_none();
+    if let Some(alpha) = picture.alpha.as_ref().filter(|_| is_premultiplied) {
         for (pixel, &alpha) in picture.pixels.iter_mut().zip(alpha).filter(|&(_, &alpha)| alpha > 0.0 && alpha < 1.0) {
             *pixel = pixel.map(|c| c / alpha);
         }
@@ -48,7 +62,7 @@ pub fn read_image(path: &Path, srgb: bool) -> Result<Image, Report> {
         None => Image::new(width, height, pixels),
         Some(alpha) => Image::with_alpha(width, height, pixels, alpha),
     };
-    image.map_err(|why| {
+    image.map(|image| (image, hash)).map_err(|why| {
         let help = "clip its largest numbers and replace those that are none";
         Report::error(format!("`{}` is no texture: {why}", path.display())).help(help)
     })

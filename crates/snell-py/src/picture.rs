@@ -69,7 +69,8 @@ impl NativePicture {
             "snell": env!("CARGO_PKG_VERSION"), "name": name, "kind": "json", "text": text, "folder": folder,
             "crop": crop, "spp": render.spp, "seed": render.seed, "depth": render.max_depth,
             "min_throughput": render.min_throughput, "bands": render.bands, "integrator": render.integrator,
-            "shadows": render.shadows(), "default_shadows": self.ready.scene.render.shadows.is_none(), "near": self.ready.scene.camera.image_plane(), "transfer": render.transfer, "rounding": render.rounding,
+            "shadows": render.shadows(), "default_shadows": self.ready.scene.render.shadows.is_none(),
+            "near": self.ready.scene.camera.image_plane(), "transfer": render.transfer, "rounding": render.rounding,
             "models": models, "film_sha256": hash,
         })
         .to_string()

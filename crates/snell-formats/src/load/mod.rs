@@ -4,7 +4,7 @@ mod models;
 mod pictures;
 
 use crate::driver::{self, Dialect, Driver};
-use crate::given::{Given, given};
+use crate::given::{given, given_file};
 use crate::nff::{self, Nff};
 use crate::report::{Report, Source, nearest};
 use crate::scene_file::{self, Syntax};
@@ -16,7 +16,6 @@ use snell::geometry::bvh::Quality;
 use snell::scene::{Integrator, Problem, Scene, Step, Warning};
 use snell::world::World;
 use std::collections::HashMap;
-use std::io::Read;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -163,7 +162,7 @@ pub fn load(name: &str, options: &LoadOptions) -> Result<Loaded, Vec<Report>> {
         };
     }
     let bytes =
-        disk::read(path, disk::MAX_SCENE_BYTES).map_err(|report| given_start(path).no_scene(name).unwrap_or(report))?;
+        disk::read(path, disk::MAX_SCENE_BYTES).map_err(|report| given_file(path).no_scene(name).unwrap_or(report))?;
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let mut loaded = load_bytes(name, path, &bytes, folder, options)?;
     loaded.path = Some(path.to_owned());
@@ -217,13 +216,6 @@ fn near_file(path: &Path) -> Option<String> {
     let (names, wanted): (Vec<String>, _) = (names.collect(), path.file_name().unwrap_or_default().to_string_lossy());
     let near = nearest(&wanted, names.iter().map(String::as_str))?;
     Some(path.with_file_name(near).display().to_string())
-}
-
-/// What a file is that is too large to be read as a scene, by its first bytes.
-fn given_start(path: &Path) -> Given {
-    let mut start = Vec::new();
-    let read = std::fs::File::open(path).and_then(|file| file.take(4096).read_to_end(&mut start));
-    if read.is_ok() { given(path, &start) } else { Given::Text }
 }
 
 /// What a text is: by the ending of its name, or by how it starts.
@@ -328,11 +320,7 @@ impl Loaded {
 
     /// Problems of the scene, each at its place in the text.
     pub fn reports(&self, problems: &[Problem]) -> Vec<Report> {
-        let report = |problem: &Problem| {
-            let report = Report::error(problem.message.clone());
-            problem.help.iter().fold(report, |report, help| report.help(help.as_str()))
-        };
-        self.places.put_all(problems.iter().map(|problem| (report(problem), problem.place.as_slice())).collect())
+        self.places.put_all(problems.iter().map(|p| (Report::from(p), p.place.as_slice())).collect())
     }
 
     /// All warnings, of the files and of the compiled scene, each at its place.

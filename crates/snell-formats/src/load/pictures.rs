@@ -1,10 +1,9 @@
 //! The pictures that a scene and its models name: on surfaces and as the sky.
 
 use super::{Loaded, ModelFile};
-use crate::disk;
 use crate::model::{find, find_in, places};
 use crate::report::Report;
-use crate::texture::read_image;
+use crate::texture::read_with_hash;
 use snell::scene::Step;
 use snell::texture::Image;
 use std::collections::HashMap;
@@ -26,12 +25,11 @@ impl PictureReader {
     pub fn read(&mut self, name: &str, path: &Path, srgb: bool) -> Result<Arc<Image>, Report> {
         let key = (path.to_owned(), srgb);
         if !self.images.contains_key(&key) {
-            let image = Arc::new(read_image(path, srgb)?);
+            let (image, sha256) = read_with_hash(path, srgb)?;
             if !self.files.iter().any(|file| file.path == path) {
-                let sha256 = disk::sha256([&disk::read(path, disk::MAX_MODEL_BYTES)?]);
                 self.files.push(ModelFile { path: path.to_owned(), sha256 });
             }
-            self.images.insert(key.clone(), image);
+            self.images.insert(key.clone(), Arc::new(image));
         }
         self.paths.insert(name.to_owned(), path.to_owned());
         Ok(Arc::clone(&self.images[&key]))

@@ -22,6 +22,28 @@ use snell::geometry::TriangleMesh;
 use snell::scene::WarningCode;
 use std::path::Path;
 
+/// A kind of model file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// Wavefront OBJ.
+    Obj,
+    /// PLY, as text or as bytes.
+    Ply,
+    /// STL, as text or as bytes.
+    Stl,
+}
+
+impl Format {
+    /// What such a file is, in words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Obj => "a Wavefront OBJ model",
+            Self::Ply => "a PLY model",
+            Self::Stl => "an STL model",
+        }
+    }
+}
+
 /// What a model file says.
 #[derive(Clone, Debug, Default)]
 pub struct Model {
@@ -47,9 +69,9 @@ pub fn parse_model(path: &Path, bytes: &[u8]) -> Result<Model, Report> {
     let what = given(path, bytes);
     let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
     match (what, &*ending) {
-        (Given::Model("a PLY model"), _) => parse_ply(&name, bytes),
-        (Given::Model("an STL model" | "a binary STL model"), _) => parse_stl(&name, bytes),
-        (Given::Model(_), _) | (Given::Text, "obj") => {
+        (Given::Model(Format::Ply), _) => parse_ply(&name, bytes),
+        (Given::Model(Format::Stl), _) => parse_stl(&name, bytes),
+        (Given::Model(Format::Obj), _) | (Given::Text, "obj") => {
             let (source, warning) = decode(&name, bytes);
             let mut model = parse_obj(&source)?;
             model.warnings.extend(warning);

@@ -3,7 +3,7 @@
 use super::polygon::Polygons;
 use super::{Model, not_drawn, without_materials};
 use crate::report::{Report, Source};
-use crate::text::decode;
+use crate::text::{decode, is_utf16};
 use crate::words::{Word, number, words};
 use snell::geometry::{TriangleMesh, Vec3};
 use std::ops::Range;
@@ -19,7 +19,7 @@ pub fn parse_ply(name: &str, bytes: &[u8]) -> Result<Model, Report> {
     let decoded;
     let bytes = match bytes {
         [0xef, 0xbb, 0xbf, rest @ ..] => rest,
-        [0xff, 0xfe, ..] | [0xfe, 0xff, ..] | [b'p', 0, ..] | [0, b'p', ..] => {
+        _ if is_utf16(bytes) => {
             decoded = decode(name, bytes).0;
             decoded.text.as_bytes()
         }

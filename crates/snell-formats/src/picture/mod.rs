@@ -36,13 +36,23 @@ const ENDINGS: &[&str] = &["png", "ppm", "exr", "npy"];
 
 impl Format {
     /// The format of a picture that starts with these bytes.
-    fn in_bytes(bytes: &[u8]) -> Option<Self> {
+    pub(crate) fn in_bytes(bytes: &[u8]) -> Option<Self> {
         match bytes {
             [0x89, b'P', b'N', b'G', ..] => Some(Self::Png { sixteen_bit: false }),
             [b'P', b'3' | b'6', space, ..] if space.is_ascii_whitespace() => Some(Self::Ppm { binary: false }),
             [0x76, 0x2f, 0x31, 0x01, ..] => Some(Self::Exr),
             [0x93, b'N', b'U', b'M', b'P', b'Y', ..] => Some(Self::Npy),
             _ => None,
+        }
+    }
+
+    /// What such a file is, in words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Png { .. } => "a PNG picture",
+            Self::Ppm { .. } => "a PPM picture",
+            Self::Exr => "an EXR picture",
+            Self::Npy => "a NumPy array",
         }
     }
 
@@ -141,25 +151,25 @@ fn fallible<T>(count: usize) -> Result<Vec<T>, String> {
 /// # Errors
 /// When the file is not such a picture, is cut off, or is too large.
 pub fn read(path: &Path) -> Result<Picture, Report> {
-    read_as(path, |_| |color| color)
+    decode(path, &disk::read(path, disk::MAX_MODEL_BYTES)?, |_| |color| color)
 }
 
-/// The same with pixels that become something smaller as they are read, so that a large picture is in memory once. Told the
-/// largest integer ([`Picture::max`]), `convert` says how.
+/// The same from the bytes of a file, with pixels that become something smaller as they are read, so that a large picture is in
+/// memory once. Told the largest integer ([`Picture::max`]), `convert` says how.
 ///
 /// # Errors
 /// As [`read`].
-pub(crate) fn read_as<P: Clone + 'static, F: Fn(Rgb) -> P + 'static>(
+pub(crate) fn decode<P: Clone + 'static, F: Fn(Rgb) -> P + 'static>(
     path: &Path,
+    bytes: &[u8],
     convert: impl FnOnce(Option<u32>) -> F,
 ) -> Result<Picture<P>, Report> {
-    let bytes = disk::read(path, disk::MAX_MODEL_BYTES)?;
-    let format = Format::in_bytes(&bytes).map_or_else(|| Format::of(path), Ok)?;
+    let format = Format::in_bytes(bytes).map_or_else(|| Format::of(path), Ok)?;
     let picture = match format {
-        Format::Png { .. } => png::read(&bytes, convert),
-        Format::Ppm { .. } => ppm::read(&bytes, convert),
-        Format::Exr => exr::read(&bytes, convert),
-        Format::Npy => npy::read(&bytes, convert),
+        Format::Png { .. } => png::read(bytes, convert),
+        Format::Ppm { .. } => ppm::read(bytes, convert),
+        Format::Exr => exr::read(bytes, convert),
+        Format::Npy => npy::read(bytes, convert),
     };
     picture.map_err(|why| Report::error(format!("`{}` cannot be read: {why}", path.display())))
 }

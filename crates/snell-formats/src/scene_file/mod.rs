@@ -107,8 +107,7 @@ fn json_range(text: &str, line: usize, column: usize) -> Range<usize> {
 
 /// Puts a problem of a scene at its place in the text.
 pub fn report(problem: &Problem, source: &Source, syntax: Syntax) -> Report {
-    let report = Report::error(problem.message.clone());
-    let report = problem.help.iter().fold(report, |report, help| report.help(help.as_str()));
+    let report = Report::from(problem);
     match places(&[&problem.place], source, syntax).pop().flatten() {
         Some(range) => report.at(source, range),
         None => report,

@@ -24,7 +24,25 @@ fn cannot_be_written(why: &dyn std::fmt::Display) -> Report {
 
 /// One table after the other: as one document, a hundred thousand spheres would take a hundred times the memory of their text.
 fn to_toml(scene: &Scene) -> Result<String, toml_edit::ser::Error> {
-    let Scene { snell, schema, ambient, background, sky, eta_outside, render, camera, .. } = scene;
+    // Each field by name: one that is added does not compile until it is written here.
+    let Scene {
+        snell,
+        schema,
+        ambient,
+        background,
+        sky,
+        eta_outside,
+        render,
+        camera,
+        lights,
+        materials,
+        textures,
+        spheres,
+        meshes,
+        planes,
+        boxes,
+        lathes,
+    } = scene;
     let settings = Scene {
         snell: *snell,
         schema: schema.clone(),
@@ -35,14 +53,14 @@ fn to_toml(scene: &Scene) -> Result<String, toml_edit::ser::Error> {
         ..Scene::new(render.clone(), camera.clone())
     };
     let mut text = document(&settings)?;
-    lists(&mut text, "light", &scene.lights)?;
-    names(&mut text, "material", &scene.materials)?;
-    names(&mut text, "texture", &scene.textures)?;
-    lists(&mut text, "sphere", &scene.spheres)?;
-    lists(&mut text, "mesh", &scene.meshes)?;
-    lists(&mut text, "plane", &scene.planes)?;
-    lists(&mut text, "box", &scene.boxes)?;
-    lists(&mut text, "lathe", &scene.lathes)?;
+    lists(&mut text, "light", lights)?;
+    names(&mut text, "material", materials)?;
+    names(&mut text, "texture", textures)?;
+    lists(&mut text, "sphere", spheres)?;
+    lists(&mut text, "mesh", meshes)?;
+    lists(&mut text, "plane", planes)?;
+    lists(&mut text, "box", boxes)?;
+    lists(&mut text, "lathe", lathes)?;
     Ok(text)
 }
 

@@ -28,7 +28,8 @@ fn reason(names: &Names<'_>, film: &Film) -> String {
         && world.background.is_black()
         && !glows
     {
-        return "nothing sends out light: the scene has no lights, and no `ambient`".to_owned();
+        let lights = if world.lights.is_empty() { "the scene has no lights" } else { "its lights are black" };
+        return format!("nothing sends out light: {lights}, and there is no `ambient`");
     }
     let (columns, rows) = (film.width(), film.height());
     let all_over = |count: usize| (0..count).step_by(count.div_ceil(GRID)).map(|i| i as u32);
