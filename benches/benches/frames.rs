@@ -3,7 +3,7 @@
 #![allow(missing_docs, reason = "criterion's macros write functions without")]
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use snell::render::{Options, render};
+use snell::render::{Options, Settings, render};
 use snell_bench::{build, scenes};
 
 const SIZE: u32 = 256;
@@ -12,11 +12,12 @@ fn frames(c: &mut Criterion) {
     let mut group = c.benchmark_group("frames");
     group.sample_size(10);
     for name in ["default", "flake:4", "knot"] {
-        let world = scenes::find(name, SIZE).and_then(|scene| build(&scene, 1)).map(|(world, _)| world);
-        let world = world.unwrap_or_else(|e| unreachable!("{e}"));
+        let scene = scenes::find(name, SIZE).unwrap_or_else(|e| unreachable!("{e}"));
+        let (world, _) = build(&scene, 1).unwrap_or_else(|e| unreachable!("{e}"));
+        let settings = Settings::of(&scene);
         group.throughput(Throughput::Elements(u64::from(SIZE * SIZE)));
         group.bench_function(BenchmarkId::from_parameter(name), |b| {
-            b.iter(|| render(&world, &Options { threads: 1, ..Options::default() }));
+            b.iter(|| render(&world, &settings, &Options { threads: 1, ..Options::default() }));
         });
     }
 }

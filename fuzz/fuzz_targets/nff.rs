@@ -2,7 +2,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use snell::render::{Options, render};
+use snell::render::{Settings, Options, render};
 use snell::world::World;
 use snell_formats::nff::parse;
 use snell_formats::text::decode;
@@ -18,7 +18,7 @@ fuzz_target!(|bytes: &[u8]| {
             nff.scene.render.size = [3, 2];
             nff.scene.render.max_depth = 2;
             if let Ok(world) = World::new(&nff.scene) {
-                render(&world, &Options { threads: 1, ..Options::default() }).unwrap();
+                render(&world, &Settings::of(&scene), &Options { threads: 1, ..Options::default() }).unwrap();
             }
         }
     }

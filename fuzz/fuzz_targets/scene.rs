@@ -3,7 +3,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use snell::render::{Options, render};
+use snell::render::{Settings, Options, render};
 use snell::world::World;
 use snell_formats::Source;
 use snell_formats::scene_file::{Syntax, parse, report, set, to_text};
@@ -31,7 +31,7 @@ fuzz_target!(|bytes: &[u8]| {
                 scene.render.size = [3, 2];
                 scene.render.max_depth = scene.render.max_depth.min(5);
                 let world = World::new(&scene).unwrap();
-                render(&world, &Options { threads: 1, ..Options::default() }).unwrap();
+                render(&world, &Settings::of(&scene), &Options { threads: 1, ..Options::default() }).unwrap();
             }
         }
     }

@@ -12,7 +12,7 @@
 #![allow(clippy::print_stdout, reason = "its answers go there")]
 
 use snell::geometry::TriangleMesh;
-use snell::render::{Options, render, render_into};
+use snell::render::{Options, Settings, render, render_into};
 use snell::world::World;
 use snell_bench::rays::{Found, Kind, RaySets};
 use snell_bench::{build, knot, scenes};
@@ -42,7 +42,7 @@ fn main() -> io::Result<()> {
 /// What is prepared when it is first asked for.
 #[derive(Default)]
 struct Worker {
-    worlds: HashMap<(String, u32), World>,
+    worlds: HashMap<(String, u32), (World, Settings)>,
     knot: Option<Knot>,
     found: Found,
 }
@@ -86,15 +86,16 @@ impl Worker {
     fn frame(&mut self, name: &str, size: u32, depth: u32, threads: usize) -> Result<String, String> {
         let key = (name.to_owned(), size);
         if !self.worlds.contains_key(&key) {
-            self.worlds.insert(key.clone(), build(&scenes::find(name, size)?, 1)?.0);
+            let scene = scenes::find(name, size)?;
+            self.worlds.insert(key.clone(), (build(&scene, 1)?.0, Settings::of(&scene)));
         }
-        let world = self.worlds.get_mut(&key).ok_or("the scene is gone")?;
-        world.render.max_depth = depth;
+        let (world, settings) = self.worlds.get(&key).ok_or("the scene is gone")?;
+        let settings = Settings { max_depth: depth, ..settings.clone() };
         let options = Options { threads, ..Options::default() };
         // The first one fetches the memory.
-        let mut film = render(world, &options).map_err(|e| e.to_string())?.film;
+        let mut film = render(world, &settings, &options).map_err(|e| e.to_string())?.film;
         let start = Instant::now();
-        let statistics = render_into(&mut film, world, &options).map_err(|e| e.to_string())?;
+        let statistics = render_into(&mut film, world, &settings, &options).map_err(|e| e.to_string())?;
         let time = start.elapsed();
         let rays = statistics.rays.total();
         Ok(format!("{}, \"rays\": {rays}, \"peak_bytes\": {}}}", timed(time), peak_bytes()))

@@ -45,7 +45,7 @@ pub fn run(
         let seen = pixels.iter().filter(|pixel| **pixel != Rgb::gray(0.0)).count();
         say(args, &format!("{}: {way}, in {seen} of {} pixels", output::shown(output), pixels.len()));
         let film = film([width, height], pixels)?;
-        let encoding = Encoding { transfer: world.render.transfer, rounding: world.render.rounding };
+        let encoding = loaded.scene.render.encoding();
         let text = remembered(&mut recipe, &film);
         output::write(output, |out| picture::write_to(out, format, &film, encoding, Some(&text)))?;
         return recipe.same_film(before.as_deref());

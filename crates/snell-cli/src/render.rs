@@ -12,7 +12,7 @@ use serde_json::json;
 use snell::explain::{Names, black_picture};
 use snell::film::transfer::Encoding;
 use snell::film::{BYTES_PER_PIXEL, Crop};
-use snell::render::{Options, RenderError, Rendered, render};
+use snell::render::{Options, RenderError, Rendered, Settings, render};
 use snell::scene::{Warning, WarningCode};
 use snell::world::World;
 use snell_formats::given::Given;
@@ -250,8 +250,10 @@ fn one(name: &str, args: &RenderArgs, output: &Path, inputs: &mut Vec<PathBuf>) 
         crop: recipe.crop,
         progress: Some(&progress),
         cancel: Some(&CANCEL),
+        ..Options::default()
     };
-    let rendered = render(&world, &options).map_err(|e| {
+    let settings = Settings::of(&loaded.scene);
+    let rendered = render(&world, &settings, &options).map_err(|e| {
         let code = if matches!(e, RenderError::CropOutside { .. }) { USAGE } else { SCENE };
         Failure::new(code, Report::error(e.to_string()))
     })?;
@@ -275,7 +277,7 @@ fn one(name: &str, args: &RenderArgs, output: &Path, inputs: &mut Vec<PathBuf>) 
     if finished {
         recipe.film_sha256 = Some(disk::sha256(rendered.film.bytes()));
     }
-    let encoding = Encoding { transfer: world.render.transfer, rounding: world.render.rounding };
+    let encoding = loaded.scene.render.encoding();
     let text = serde_json::to_string(&recipe).unwrap_or_default();
     let written = output::write(output, |out| picture::write_to(out, format, &rendered.film, encoding, Some(&text)));
     RENDERING.store(false, Ordering::Relaxed);
@@ -286,9 +288,9 @@ fn one(name: &str, args: &RenderArgs, output: &Path, inputs: &mut Vec<PathBuf>) 
         }
         return Err(Failure { code, reports });
     }
-    let mut odd = rendered.statistics.warnings(&world, rendered.film.pixels.len() as u64);
+    let mut odd = rendered.statistics.warnings(&world, &settings);
     odd.extend(black_picture(&Names { world: &world, scene: &loaded.scene }, &rendered.film));
-    summary(&recipe, &world, &rendered, &odd, args, &options, output, seconds);
+    summary(&recipe, &world, &settings, &rendered, &odd, args, &options, output, seconds);
     if !finished {
         return Err(Failure { code: INTERRUPTED, reports: Vec::new() });
     }
@@ -346,6 +348,7 @@ fn warn(reports: &[Report], args: &RenderArgs) {
 fn summary(
     recipe: &Recipe,
     world: &World,
+    settings: &Settings,
     rendered: &Rendered,
     odd: &[Warning],
     args: &RenderArgs,
@@ -356,7 +359,6 @@ fn summary(
     let film = &rendered.film;
     let statistics = &rendered.statistics;
     let (rays, lost) = (statistics.rays, statistics.lost);
-    let pixels = film.pixels.len() as u64;
     let (worst_x, worst_y) = lost.worst_pixel(world.camera.size[0]);
     let hash = recipe.film_sha256.as_deref();
     if args.progress == ProgressKind::Json {
@@ -374,7 +376,7 @@ fn summary(
                 "lanes": options.lanes.numbers(),
                 "tree": { "nodes": tree.nodes, "leaves": tree.leaves, "depth": tree.depth },
                 "lost": {
-                    "rays": lost.rays, "share": lost.share(pixels), "worst": lost.worst(), "worst_pixel": [worst_x, worst_y],
+                    "rays": lost.rays, "share": lost.share(rays.camera), "worst": lost.worst(settings.spp), "worst_pixel": [worst_x, worst_y],
                 },
                 "film_sha256": hash,
             })
@@ -395,7 +397,7 @@ fn summary(
         short(total),
         short(total / seconds.max(1e-9)),
     ));
-    if lost.rays > 0 && world.render.max_depth == 0 {
+    if lost.rays > 0 && settings.max_depth == 0 {
         tell("  depth 0: mirrors and glass send no rays on");
     }
     for warning in odd {

@@ -8,7 +8,7 @@ use common::{alike, ball, close, furnace, furnish, glass, leaves, mesh, picture,
 use snell::explain::explain;
 use snell::film::{Film, Rgb};
 use snell::geometry::{Affine, TriangleMesh, Vec3};
-use snell::render::{Options, render};
+use snell::render::{Options, Settings, render};
 use snell::scene::{Integrator, Light, Material, Mesh, OpenMesh, Plane, Scene, Shadows, Transform, WarningCode};
 use snell::trace::RayKind;
 use snell::world::World;
@@ -191,7 +191,7 @@ fn a_white_furnace_with_holes_stays_white() {
         let world = World::new(&scene).unwrap();
         let mut white = 0;
         for pixel in 0..48 * 48 {
-            let (radiance, tree) = traced(&world, pixel % 48, pixel / 48);
+            let (radiance, tree) = traced(&scene, &world, pixel % 48, pixel / 48);
             white += u32::from(tree.lost == Rgb::gray(0.0));
             // Some hundred rays, each with a few roundings of 1e-16.
             assert!(close(radiance + tree.lost, Rgb::gray(1.0), 1e-12), "{radiance:?} at {pixel}, depth {depth}");
@@ -382,7 +382,8 @@ fn what_lies_on_something_hides_its_share_of_it() {
                 // All that is white is seen once, but for the black half that is met first, and again from within.
                 assert_eq!(second[0].throughput, Rgb::gray(0.5));
             }
-            let statistics = render(&World::new(&scene).unwrap(), &Options::default()).unwrap().statistics;
+            let statistics =
+                render(&World::new(&scene).unwrap(), &Settings::of(&scene), &Options::default()).unwrap().statistics;
             assert_eq!(statistics.stray.count, 0);
         }
     }

@@ -7,7 +7,7 @@ mod common;
 use common::leaves;
 use snell::explain::{Ending, Explanation, Names, Path, channels, explain, find, hits, layers};
 use snell::film::{Crop, Rgb};
-use snell::render::{Options, render, trace_pixel};
+use snell::render::{Options, Settings, render, trace_pixel};
 use snell::scene::{Integrator, Scene, Shadows};
 use snell::world::World;
 use snell_formats::builtin::SCENES;
@@ -34,21 +34,32 @@ fn scenes(group: &str, size: u32) -> Vec<(String, Scene)> {
     all
 }
 
-/// The contributions of an explanation, folded as the design says: within a sample one by one, then the samples, then the mean.
+/// The contributions of an explanation, folded as is written: within a sample one by one; the samples pairwise over aligned ranges
+/// of powers of two, and the largest such ranges one by one; then the mean.
 fn folded(explanation: &Explanation) -> [f64; 3] {
     let add = |a: [f64; 3], b: [f64; 3]| [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
     let sample =
         |nodes: &[snell::explain::ExplainedNode]| nodes.iter().fold([0.0; 3], |sum, n| add(sum, n.contribution));
     let samples: Vec<[f64; 3]> = explanation.samples.iter().map(|s| sample(&s.nodes)).collect();
-    match samples.as_slice() {
-        [only] => *only,
-        all => all.iter().fold([0.0; 3], |sum, s| add(sum, *s)).map(|c| c / f64::from(explanation.spp)),
+    fn pairs(samples: &[[f64; 3]], add: &impl Fn([f64; 3], [f64; 3]) -> [f64; 3]) -> [f64; 3] {
+        if let [only] = samples {
+            return *only;
+        }
+        let (left, right) = samples.split_at(samples.len() / 2);
+        add(pairs(left, add), pairs(right, add))
     }
+    let (mut blocks, mut rest) = (Vec::new(), samples.as_slice());
+    while !rest.is_empty() {
+        let (block, after) = rest.split_at(1 << rest.len().ilog2());
+        blocks.push(pairs(block, &add));
+        rest = after;
+    }
+    blocks.into_iter().reduce(add).unwrap().map(|c| c / f64::from(explanation.spp))
 }
 
 fn adds_up(name: &str, scene: &Scene) {
     let world = World::new(scene).unwrap();
-    let film = render(&world, &Options::default()).unwrap().film;
+    let film = render(&world, &Settings::of(scene), &Options::default()).unwrap().film;
     let width = world.camera.size[0];
     for (number, pixel) in (0u32..).zip(&film.pixels) {
         let (explanation, _) = explain(&world, scene, name, number % width, number / width).unwrap();
@@ -113,7 +124,7 @@ fn the_bounds_hold_ten_levels_deeper() {
         let world = World::new(&scene).unwrap();
         let mut deep = scene.clone();
         deep.render.max_depth = 12;
-        let deeper = render(&World::new(&deep).unwrap(), &Options::default()).unwrap().film;
+        let deeper = render(&World::new(&deep).unwrap(), &Settings::of(&deep), &Options::default()).unwrap().film;
         let width = world.camera.size[0];
         let mut used = 0.0f64;
         for (number, pixel) in (0u32..).zip(&deeper.pixels) {
@@ -138,7 +149,7 @@ fn the_bounds_hold_ten_levels_deeper() {
 fn layers_add_up_to_the_picture() {
     for (name, scene) in scenes("gallery/bubbles", 24).into_iter().chain(scenes("lecture/default", 32)) {
         let world = World::new(&scene).unwrap();
-        let film = render(&world, &Options::default()).unwrap().film;
+        let film = render(&world, &Settings::of(&scene), &Options::default()).unwrap().film;
         let split = layers(&world, &scene, 5, &Options::default()).unwrap();
         assert_eq!(split.picture, film.pixels, "{name}");
         let left = split.rest.iter().any(|c| *c != Rgb::gray(0.0));
@@ -148,7 +159,13 @@ fn layers_add_up_to_the_picture() {
         for (i, pixel) in film.pixels.iter().enumerate() {
             let all = split.layers.iter().map(|(_, pixels)| pixels[i]).chain([split.rest[i]]);
             let (sum, count) = all.fold((Rgb::gray(0.0), 0.0), |(sum, count), c| (sum + c, count + 1.0));
-            let trace = trace_pixel(&world, i as u32 % film.width() as u32, i as u32 / film.width() as u32).unwrap();
+            let trace = trace_pixel(
+                &world,
+                &Settings::of(&scene),
+                i as u32 % film.width() as u32,
+                i as u32 / film.width() as u32,
+            )
+            .unwrap();
             let additions = count + trace.samples.iter().map(|s| s.nodes.len()).sum::<usize>() as f64;
             for (sum, pixel) in sum.to_array().into_iter().zip(pixel.to_array()) {
                 // One ulp for each addition.
@@ -170,7 +187,7 @@ fn an_object_is_found_in_all_pixels_that_show_it() {
     let names = Names { world: &world, scene: &scene };
     let mut counts: BTreeMap<Path, u64> = BTreeMap::new();
     for number in 0..96 * 96 {
-        let trace = trace_pixel(&world, number % 96, number / 96).unwrap();
+        let trace = trace_pixel(&world, &Settings::of(&scene), number % 96, number / 96).unwrap();
         let tree = &trace.samples[0];
         let seen = (0..tree.nodes.len()).filter(|&n| tree.nodes[n].contribution != Rgb::gray(0.0));
         let mut paths: Vec<Path> = seen.map(|n| Path::of(&names, tree, n)).filter(|path| path.end == "green").collect();
@@ -195,8 +212,8 @@ fn channels_agree_with_explanations() {
     for (name, scene) in scenes("lecture/default", 40).into_iter().chain(scenes("gallery/ice", 24)) {
         let world = World::new(&scene).unwrap();
         let part = Crop { x: 3, y: 5, width: 20, height: 17 };
-        let options = Options { crop: Some(part), ..Options::default() };
-        let (found, met) = (channels(&world, &options).unwrap(), hits(&world, &options).unwrap());
+        let (settings, options) = (Settings::of(&scene), Options { crop: Some(part), ..Options::default() });
+        let (found, met) = (channels(&world, &settings, &options).unwrap(), hits(&world, &settings, &options).unwrap());
         let mut missed = 0;
         for i in 0..(20 * 17) as usize {
             let (x, y) = (3 + i as u32 % 20, 5 + i as u32 / 20);
@@ -212,7 +229,7 @@ fn channels_agree_with_explanations() {
         }
         assert!(missed < 20 * 17, "{name}: nothing is seen");
         let stop = std::sync::atomic::AtomicBool::new(true);
-        assert_eq!(channels(&world, &Options { cancel: Some(&stop), ..Options::default() }), None);
+        assert_eq!(channels(&world, &settings, &Options { cancel: Some(&stop), ..Options::default() }), None);
     }
 }
 
@@ -329,7 +346,7 @@ material = "air"
     let scene = load::load_text(source, kind, std::path::Path::new("."), &options).unwrap().scene;
     let world = World::new(&scene).unwrap();
     let names = Names { world: &world, scene: &scene };
-    let trace = trace_pixel(&world, 1, 1).unwrap();
+    let trace = trace_pixel(&world, &Settings::of(&scene), 1, 1).unwrap();
     let tree = &trace.samples[0];
     let strongest =
         (0..tree.nodes.len()).max_by(|&a, &b| tree.nodes[a].contribution.g.total_cmp(&tree.nodes[b].contribution.g));

@@ -7,7 +7,7 @@ mod common;
 use common::{alike, ball, furnace, glass, mesh, picture, straight_through, traced, tree};
 use snell::film::Rgb;
 use snell::geometry::{TriangleMesh, Vec3};
-use snell::render::{Options, render};
+use snell::render::{Options, Settings, render};
 use snell::scene::{Lathe, Material, Mesh, Plane, Scene, Shadows};
 use snell::trace::RayKind;
 use snell::world::World;
@@ -67,7 +67,7 @@ fn a_pane_is_met_once_wherever_its_triangles_end() {
     scene.planes.push(Plane::new([0.1, 0.2, 0.0], [0.9, 0.3, 1.0], [40.0, 40.0], "pane"));
     let world = World::new(&scene).unwrap();
     for pixel in 0..3600 {
-        let (radiance, tree) = traced(&world, pixel % 60, pixel / 60);
+        let (radiance, tree) = traced(&scene, &world, pixel % 60, pixel / 60);
         assert_eq!(tree.nodes.len(), 3, "the ray, its mirror image, and what goes through, at {pixel}");
         assert!(common::close(radiance + tree.lost, Rgb::gray(1.0), 1e-15));
     }
@@ -87,7 +87,7 @@ fn a_white_furnace_with_thin_faces_stays_white() {
         scene.render.max_depth = depth;
         let world = World::new(&scene).unwrap();
         for pixel in 0..400 {
-            let (radiance, tree) = traced(&world, pixel % 20, pixel / 20);
+            let (radiance, tree) = traced(&scene, &world, pixel % 20, pixel / 20);
             // Some hundred rays, each with a few roundings of 1e-16.
             assert!(common::close(radiance + tree.lost, Rgb::gray(1.0), 1e-12), "{radiance:?} at {pixel}");
         }
@@ -168,7 +168,8 @@ fn interfaces_show_what_solids_show() {
     }
     let (a, b) = (picture(&solids), picture(&split));
     assert!(alike(&a, &b) * 1000 >= a.pixels.len() * 999, "{} of {}", alike(&a, &b), a.pixels.len());
-    let statistics = render(&World::new(&split).unwrap(), &Options::default()).unwrap().statistics;
+    let statistics =
+        render(&World::new(&split).unwrap(), &Settings::of(&split), &Options::default()).unwrap().statistics;
     assert_eq!(statistics.stray.count, 0);
 }
 
@@ -197,7 +198,7 @@ fn an_overlap_without_a_priority_is_told() {
         ball(&mut scene, [center, 0.0, 0.0], radius, "other");
         scene.spheres[1].name = Some("second".to_owned());
         let world = World::new(&scene).unwrap();
-        let found = render(&world, &Options::default()).unwrap().statistics.overlaps;
+        let found = render(&world, &Settings::of(&scene), &Options::default()).unwrap().statistics.overlaps;
         found.first.map(|overlap| {
             let mut names = overlap.primitives.map(|p| world.object_of(p).unwrap().name.clone());
             names.sort();
@@ -241,7 +242,8 @@ fn a_camera_under_an_interface_is_under_water() {
     let tree = tree(&scene, [0.0, -3.0, 0.0], [0.0, 1.0, 0.0]);
     let (r, tau) = ((0.33f64 / 2.33) * (0.33 / 2.33), libm::exp(-0.3));
     assert!((tree.nodes[0].eta - 1.33).abs() < 1e-15);
-    let statistics = render(&World::new(&scene).unwrap(), &Options::default()).unwrap().statistics;
+    let statistics =
+        render(&World::new(&scene).unwrap(), &Settings::of(&scene), &Options::default()).unwrap().statistics;
     assert_eq!(statistics.stray.count, 0, "the sea has no other shore");
     let out = tree.nodes.iter().find(|n| n.kind == RayKind::Refracted).unwrap();
     // A few roundings.
@@ -271,7 +273,7 @@ fn a_mirrored_interface_is_what_it_was() {
     let mut film = |inside: Option<&str>, factor: f64| {
         scene.lathes = vec![lathe(inside, factor)];
         let world = World::new(&scene).unwrap();
-        let rendered = render(&world, &Options::default()).unwrap();
+        let rendered = render(&world, &Settings::of(&scene), &Options::default()).unwrap();
         assert_eq!(rendered.statistics.stray.count, 0, "{inside:?} {factor}");
         rendered.film
     };
@@ -308,7 +310,7 @@ fn a_bubble_of_panes_has_two_walls_everywhere() {
         let (x, y) = (f64::from(pixel % 48) - 23.5, f64::from(pixel / 48) - 23.5);
         // Within four fifths of its outline, which has a radius of 1/√99·5·47/4 pixels.
         if (x * x + y * y).sqrt() < 4.7 {
-            let (_, tree) = traced(&world, pixel % 48, pixel / 48);
+            let (_, tree) = traced(&scene, &world, pixel % 48, pixel / 48);
             seen += 1;
             twice += u32::from(straight_through(&tree).2 == 2);
         }

@@ -6,7 +6,8 @@ mod common;
 
 use common::traced;
 use snell::film::Rgb;
-use snell::render::{Options, render};
+use snell::render::{Options, Settings, render};
+use snell::scene::Scene;
 use snell::trace::{Node, RayKind, RayTree};
 use snell::world::World;
 use snell_formats::Source;
@@ -19,7 +20,7 @@ fn shown(name: &str, size: [u32; 2], pixel: [u32; 2]) -> (Vec<String>, RayTree) 
     let mut scene = lecture(name, 1);
     scene.render.size = size;
     let world = World::new(&scene).unwrap();
-    let (_, tree) = traced(&world, pixel[0], pixel[1]);
+    let (_, tree) = traced(&scene, &world, pixel[0], pixel[1]);
     let mut nodes: Vec<_> = tree.nodes.iter().filter(|n| n.contribution.mean() > 0.0).collect();
     nodes.sort_by(|a, b| b.contribution.mean().total_cmp(&a.contribution.mean()));
     let name = |n: &&Node| {
@@ -71,7 +72,7 @@ fn the_prism_of_the_gallery_shows_the_colours_in_order() {
     scene.render.size = [320, 240];
     let world = World::new(&scene).unwrap();
     let crop = Some(snell::film::Crop { x: 90, y: 90, width: 80, height: 1 });
-    let row = render(&world, &Options { crop, ..Options::default() }).unwrap().film.pixels;
+    let row = render(&world, &Settings::of(&scene), &Options { crop, ..Options::default() }).unwrap().film.pixels;
     let peak =
         |value: fn(&Rgb) -> f64| (0..row.len()).max_by(|&a, &b| value(&row[a]).total_cmp(&value(&row[b]))).unwrap();
     let (red, green, blue) = (peak(|c| c.r - c.g - c.b), peak(|c| c.g - c.r - c.b), peak(|c| c.b - c.r - c.g));
@@ -89,9 +90,12 @@ fn built_in_scenes_lose_little_light_or_say_so() {
         let mut scene = parse(&source, Syntax::Toml).unwrap();
         // The average over every eighth column and row is that of the whole picture but for 6 % of itself.
         scene.render.size = scene.render.size.map(|n| n / 8);
-        let rendered = render(&World::new(&scene).unwrap(), &Options::default()).unwrap();
+        let rendered = render(&World::new(&scene).unwrap(), &Settings::of(&scene), &Options::default()).unwrap();
         let pixels = u64::from(scene.render.size[0]) * u64::from(scene.render.size[1]);
-        let (share, says) = (rendered.statistics.lost.share(pixels), description(text).join(" ").contains("W202"));
+        let (share, says) = (
+            rendered.statistics.lost.share(pixels * u64::from(scene.render.spp)),
+            description(text).join(" ").contains("W202"),
+        );
         assert_eq!(share > 0.01, says, "{name}: {share}");
         if says {
             told.push(*name);
@@ -102,6 +106,7 @@ fn built_in_scenes_lose_little_light_or_say_so() {
 
 /// A built-in scene at this size, one sample for each pixel, and what the pixels show most.
 struct Look {
+    scene: Scene,
     world: World,
 }
 
@@ -109,11 +114,12 @@ impl Look {
     fn at(name: &str, size: [u32; 2]) -> Self {
         let mut scene = lecture(name, 1);
         (scene.render.size, scene.render.spp) = (size, 1);
-        Self { world: World::new(&scene).unwrap() }
+        let world = World::new(&scene).unwrap();
+        Self { scene, world }
     }
 
     fn tree(&self, x: u32, y: u32) -> RayTree {
-        traced(&self.world, x, y).1
+        traced(&self.scene, &self.world, x, y).1
     }
 
     fn name(&self, node: &Node) -> &str {
@@ -172,7 +178,8 @@ fn the_window_shifts_the_poles() {
 fn each_plate_takes_its_share() {
     let mut scene = lecture("gallery/plates", 1);
     (scene.render.size, scene.render.spp, scene.render.min_throughput) = ([768, 432], 1, 1e-6);
-    let look = Look { world: World::new(&scene).unwrap() };
+    let world = World::new(&scene).unwrap();
+    let look = Look { scene, world };
     // In the middle of each step.
     for (n, x) in [60, 155, 236, 314, 389, 461, 531, 598, 666].into_iter().enumerate() {
         let tree = look.tree(x, 150);
@@ -216,7 +223,7 @@ fn the_brilliant_sends_light_back_with_fire() {
         }
     }
     assert!(up > 1.5 * down, "{up} up, {down} down");
-    let film = render(&look.world, &Options::default()).unwrap().film;
+    let film = render(&look.world, &Settings::of(&look.scene), &Options::default()).unwrap().film;
     let colourful = |c: &&Rgb| {
         let [r, g, b] = c.to_array().map(|c| c.clamp(0.0, 1.0));
         r.max(g).max(b) - r.min(g).min(b) > 0.35

@@ -7,7 +7,7 @@ mod common;
 use common::{cases, close, furnace, glass, mesh, picture, traced};
 use snell::film::Rgb;
 use snell::geometry::{Affine, TriangleMesh, Vec3, make, triangle};
-use snell::render::{Options, render};
+use snell::render::{Options, Settings, render};
 use snell::scene::{Camera, Integrator, Light, Material, Render, Scene, Shadows, Sky, Transform, WarningCode};
 use snell::trace::Statistics;
 use snell::world::{CameraFrame, World};
@@ -101,7 +101,7 @@ fn stage(geometry: TriangleMesh, material: Material) -> Scene {
 }
 
 /// Turns the camera of a world, from its eye to a point.
-fn aim(world: &mut World, eye: Vec3, at: Vec3, size: f64) {
+fn aim(scene: &Scene, world: &mut World, eye: Vec3, at: Vec3, size: f64) {
     let up = if (at - eye).unit().y.abs() > 0.9 { [1.0, 0.0, 0.0] } else { [0.0, 1.0, 0.0] };
     let camera = Camera::new(
         [eye.x, eye.y, eye.z],
@@ -110,13 +110,13 @@ fn aim(world: &mut World, eye: Vec3, at: Vec3, size: f64) {
         [-size, size, -size, size],
         -0.5 * (at - eye).length(),
     );
-    world.camera = CameraFrame::new(&camera, &world.render);
+    world.camera = CameraFrame::new(&camera, &scene.render);
 }
 
 /// What is seen there.
-fn look(world: &mut World, eye: Vec3, at: Vec3, size: f64) -> Rgb {
-    aim(world, eye, at, size);
-    traced(world, 0, 0).0
+fn look(scene: &Scene, world: &mut World, eye: Vec3, at: Vec3, size: f64) -> Rgb {
+    aim(scene, world, eye, at, size);
+    traced(scene, world, 0, 0).0
 }
 
 /// Where to aim: the corners of a mesh and some points on its edges, and which faces meet there.
@@ -171,7 +171,7 @@ fn convex_solids_do_not_shade_or_mirror_themselves() {
                     scene.camera.eye = [eye.x, eye.y, eye.z];
                     scene.camera.look_at = [middle.x, middle.y, middle.z];
                 }
-                let [mut lit, mut mirrored] = [lit, mirrored].map(|scene| World::new(&scene).unwrap());
+                let [mut lit_world, mut mirrored_world] = [&lit, &mirrored].map(|scene| World::new(scene).unwrap());
                 for (at, around) in places(&placed) {
                     let wo = (eye - at).unit();
                     let normals: Vec<Vec3> = around.iter().map(|&f| triangle::normal(placed.corners(f))).collect();
@@ -186,7 +186,7 @@ fn convex_solids_do_not_shade_or_mirror_themselves() {
                     }
                     aimed += 1;
                     // Along the outline the ray may pass, and the sky is what is seen.
-                    let seen = look(&mut lit, eye, at, size).r;
+                    let seen = look(&lit, &mut lit_world, eye, at, size).r;
                     let wi = (light - at).unit();
                     let mut expected: Vec<f64> = normals.iter().map(|n| n.dot(wi).max(0.0)).collect();
                     expected.extend(outline.then_some(0.0));
@@ -196,7 +196,7 @@ fn convex_solids_do_not_shade_or_mirror_themselves() {
                         fits,
                         "{name}, 2^{exponent}, {offset} away: {seen} at {at:?}, expected one of {expected:?}"
                     );
-                    let seen = look(&mut mirrored, eye, at, size).r;
+                    let seen = look(&mirrored, &mut mirrored_world, eye, at, size).r;
                     let heights = normals.iter().map(|&n| (n * (2.0 * n.dot(wo)) - wo).unit().y);
                     let expected: Vec<f64> = heights.chain(outline.then_some(-wo.y)).map(|y| 0.5 + 0.5 * y).collect();
                     let fits = expected.iter().any(|e| (e - seen).abs() < 1e-9);
@@ -236,7 +236,7 @@ fn the_corners_of_a_room_do_not_leak() {
                 scene.render.shadows = Some(shadows);
                 let mut world = World::new(&scene).unwrap();
                 for (at, _) in places(&placed) {
-                    let seen = look(&mut world, eye, at, size);
+                    let seen = look(&scene, &mut world, eye, at, size);
                     assert_eq!(seen, black, "{name}, {size} large, {offset} away, {shadows:?}, at {at:?}");
                 }
             }
@@ -278,7 +278,7 @@ fn what_is_near_a_wall_is_in_its_shadow() {
                     mesh(&mut scene, wall.clone(), "it");
                     scene.camera.eye = [eye.x, eye.y, eye.z];
                     scene.lights.push(point_light(light));
-                    let seen = look(&mut World::new(&scene).unwrap(), eye, place, size).r;
+                    let seen = look(&scene, &mut World::new(&scene).unwrap(), eye, place, size).r;
                     let toward = (light - place).unit();
                     if side > 0.0 {
                         assert_eq!(seen, 0.0, "{size}, {offset}: light at {x} behind the wall");
@@ -293,7 +293,7 @@ fn what_is_near_a_wall_is_in_its_shadow() {
                     mesh(&mut scene, wall.clone(), "red");
                     (scene.ambient, scene.background) = (Rgb::gray(1.0), Rgb::new(0.0, 0.0, 1.0));
                     scene.camera.eye = [eye.x, eye.y, eye.z];
-                    let seen = look(&mut World::new(&scene).unwrap(), eye, place, size);
+                    let seen = look(&scene, &mut World::new(&scene).unwrap(), eye, place, size);
                     assert_eq!(seen, Rgb::new(1.0, 0.0, 0.0), "{size}, {offset}: the wall, {side}·{x} from its foot");
                 }
             }
@@ -317,7 +317,7 @@ fn a_stretched_instance_leaves_shadows_alone() {
         // Between the floor and the plate, looking at the floor.
         let eye = Vec3::new(2.0, 0.5 * gap, 0.0);
         scene.camera.eye = [eye.x, eye.y, eye.z];
-        let seen = look(&mut World::new(&scene).unwrap(), eye, Vec3::new(0.3, 0.0, 0.0), 1.0);
+        let seen = look(&scene, &mut World::new(&scene).unwrap(), eye, Vec3::new(0.3, 0.0, 0.0), 1.0);
         assert_eq!(seen, black, "the floor is lit through a plate {gap} above it");
     }
 }
@@ -333,7 +333,7 @@ fn an_eye_in_line_with_an_edge_is_where_it_is() {
             let eye = at - line * 9.0;
             scene.camera.eye = [eye.x, eye.y, eye.z];
             scene.camera.look_at = [at.x, at.y, at.z];
-            let (_, tree) = traced(&World::new(&scene).unwrap(), 0, 0);
+            let (_, tree) = traced(&scene, &World::new(&scene).unwrap(), 0, 0);
             assert_eq!(tree.nodes[0].medium, None, "{name}: the eye is before {at:?}");
         }
     }
@@ -369,7 +369,7 @@ fn a_smooth_solid_does_not_shade_itself() {
         let world = World::new(&scene).unwrap();
         let mut lit = 0;
         for pixel in 0..61 * 61 {
-            let (_, tree) = traced(&world, pixel % 61, pixel / 61);
+            let (_, tree) = traced(&scene, &world, pixel % 61, pixel / 61);
             for hit in tree.nodes.iter().filter_map(|node| node.hit.as_ref()) {
                 for light in &hit.lights {
                     assert!(light.between.is_empty(), "pixel {pixel}, {size}, {offset}: {:?}", light.between);
@@ -422,7 +422,7 @@ fn glass_of_slivers_has_no_holes() {
                 Camera::new(eye, [0.0; 3], [0.0, 1.0, 0.0], [-half[0], half[0], -half[0], half[0]], -4.0 * size);
             let world = World::new(&scene).unwrap();
             for pixel in 0..24 * 24 {
-                let (radiance, tree) = traced(&world, pixel % 24, pixel / 24);
+                let (radiance, tree) = traced(&scene, &world, pixel % 24, pixel / 24);
                 for channel in (radiance + tree.lost).to_array() {
                     // Some hundred rays, each with a few roundings of 1e-16.
                     assert!((channel - 1.0).abs() < 1e-12, "{name}, {size} large: {channel} in pixel {pixel}");
@@ -437,9 +437,8 @@ fn glass_of_slivers_has_no_holes() {
 /// What W007 says of a picture.
 fn strays(scene: &Scene) -> Option<String> {
     let world = World::new(scene).unwrap();
-    let statistics: Statistics = render(&world, &Options::default()).unwrap().statistics;
-    let [width, height] = world.render.size;
-    let warnings = statistics.warnings(&world, u64::from(width) * u64::from(height));
+    let statistics: Statistics = render(&world, &Settings::of(scene), &Options::default()).unwrap().statistics;
+    let warnings = statistics.warnings(&world, &Settings::of(scene));
     warnings.into_iter().find(|w| w.code == WarningCode::StrayExit).map(|w| w.message)
 }
 
@@ -462,11 +461,11 @@ fn glass_is_left_at_its_edges() {
                 scene.camera.eye = [eye.x, eye.y, eye.z];
                 let mut world = World::new(&scene).unwrap();
                 for (at, _) in places(&placed).into_iter().chain([(middle, vec![])]) {
-                    aim(&mut world, eye, at, size);
-                    let (radiance, tree) = traced(&world, 0, 0);
+                    aim(&scene, &mut world, eye, at, size);
+                    let (radiance, tree) = traced(&scene, &world, 0, 0);
                     let whole = (radiance + tree.lost).r;
                     assert!((whole - 1.0).abs() < 1e-12, "{name}, {size} large, {offset} away: {whole} at {at:?}");
-                    let statistics = render(&world, &Options::default()).unwrap().statistics;
+                    let statistics = render(&world, &Settings::of(&scene), &Options::default()).unwrap().statistics;
                     assert_eq!(statistics.stray.count, 0, "{name}, {size} large, {offset} away, at {at:?}");
                     aimed += 1;
                 }
@@ -676,7 +675,7 @@ fn the_cases_of_light_are_right() {
         let [width, height] = scene.render.size;
         let mut row = Vec::new();
         for (x, y) in (0..height).step_by(3).flat_map(|y| (0..width).map(move |x| (x, y))) {
-            let (radiance, tree) = traced(&world, x, y);
+            let (radiance, tree) = traced(&scene, &world, x, y);
             let seen = (radiance + tree.lost).r;
             if opaque {
                 row.push(seen == 0.0);

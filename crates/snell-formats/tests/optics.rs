@@ -59,7 +59,7 @@ fn a_white_furnace_stays_white() {
             scene.render.max_depth = depth;
             let world = World::new(&scene).unwrap();
             for pixel in 0..24 * 24 {
-                let (radiance, tree) = traced(&world, pixel % 24, pixel / 24);
+                let (radiance, tree) = traced(&scene, &world, pixel % 24, pixel / 24);
                 assert_eq!(radiance, tree.sum());
                 let whole = radiance + tree.lost;
                 for channel in whole.to_array() {
@@ -367,7 +367,7 @@ fn a_camera_in_water_looks_out_through_one_face() {
     glass(&mut scene, "water", 1.33, 0);
     ball(&mut scene, [0.0, 0.0, 10.0], 8.0, "water");
     let world = World::new(&scene).unwrap();
-    let (_, tree) = traced(&world, 8, 8);
+    let (_, tree) = traced(&scene, &world, 8, 8);
     let r = (0.33f64 / 2.33) * (0.33 / 2.33);
     let first = tree.nodes.iter().find(|n| n.kind == RayKind::Refracted).unwrap();
     // Nearly straight on: the reflectance has no slope there.
@@ -413,7 +413,7 @@ fn a_white_furnace_stays_white_with_dispersion() {
     ball(&mut scene, [1.0, 0.5, 1.0], 0.8, "flint");
     let world = World::new(&scene).unwrap();
     for pixel in 0..144 {
-        let (_, tree) = traced(&world, pixel % 12, pixel / 12);
+        let (_, tree) = traced(&scene, &world, pixel % 12, pixel / 12);
         let whole = tree.sum() + tree.lost;
         // As without dispersion; the weights of the bands add up to one exactly.
         assert!(whole.to_array().iter().all(|c| (c - 1.0).abs() < 1e-12), "{whole:?} at {pixel}");

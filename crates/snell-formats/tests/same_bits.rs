@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use snell::film::{Crop, Film, Rgb};
-use snell::render::{LaneWidth, Options, render, render_into, trace_pixel};
+use snell::render::{LaneWidth, Options, Settings, render, render_into, trace_pixel};
 use snell::scene::{Integrator, Scene, Transform};
 use snell::world::World;
 use snell_formats::scene_file::{Syntax, parse};
@@ -14,8 +14,8 @@ use snell_test_scenes::{
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-fn picture(world: &World, options: &Options<'_>) -> Film {
-    render(world, options).unwrap().film
+fn picture(scene: &Scene, options: &Options<'_>) -> Film {
+    render(&World::new(scene).unwrap(), &Settings::of(scene), options).unwrap().film
 }
 
 fn hash(film: &Film) -> String {
@@ -81,7 +81,7 @@ fn the_tree_changes_nothing_far_from_the_origin_either() {
 /// in the commit, by what the failing test prints.
 #[test]
 fn the_bits_are_those_of_the_first_light() {
-    let film = |scene: Scene| picture(&World::new(&scene).unwrap(), &Options::default());
+    let film = |scene: Scene| picture(&scene, &Options::default());
     let hashes = first_light().into_iter().map(|(_, scene)| hash(&film(scene)));
     assert_eq!(disk::sha256(hashes), "ce66979c6916635c79a8b5b28afcd5a2f4247d9827a1f1a4d2a43ee1c1208102");
 }
@@ -120,8 +120,9 @@ fn an_impossible_place_is_a_problem_with_its_name() {
 #[test]
 fn the_crowd_is_worth_tracing() {
     // Otherwise the test above proves nothing.
-    let world = World::new(&crowd(Integrator::Lecture)).unwrap();
-    let rendered = render(&world, &Options::default()).unwrap();
+    let scene = crowd(Integrator::Lecture);
+    let world = World::new(&scene).unwrap();
+    let rendered = render(&world, &Settings::of(&scene), &Options::default()).unwrap();
     let rays = rendered.statistics.rays;
     assert!(rays.mirror > 500 && rays.refracted > 20 && rays.shadow > 1000, "{rays:?}");
     assert!(rendered.statistics.lost.rays > 0, "{:?}", rendered.statistics);
@@ -132,44 +133,45 @@ fn the_hostile_scenes_are_worth_tracing_too() {
     for (name, scene) in hostile() {
         let world = World::new(&scene).unwrap();
         assert!(world.primitive_count() > 2000, "{name}");
-        let rendered = render(&world, &Options::default()).unwrap();
+        let rendered = render(&world, &Settings::of(&scene), &Options::default()).unwrap();
         let rays = rendered.statistics.rays;
         assert!(rays.mirror > 200 && rays.shadow > 400, "{name}: {rays:?}");
         assert!(rays.refracted > 0 || scene.render.integrator == Integrator::Course2018, "{name}: {rays:?}");
     }
     let mut scene = tiny_and_huge();
-    let with = picture(&World::new(&scene).unwrap(), &Options::default());
+    let with = picture(&scene, &Options::default());
     scene.spheres.retain(|s| s.radius > 1e-9);
-    let without = picture(&World::new(&scene).unwrap(), &Options::default());
+    let without = picture(&scene, &Options::default());
     let changed = with.pixels.iter().zip(&without.pixels).filter(|(a, b)| a != b).count();
     assert!(changed > 288, "spheres of 1e-9 change {changed} of 576 pixels");
 }
 
 #[test]
 fn a_crop_is_a_part_of_the_whole() {
-    let world = World::new(&lecture("lecture/default", 40)).unwrap();
-    let whole = picture(&world, &Options::default());
+    let scene = lecture("lecture/default", 40);
+    let world = World::new(&scene).unwrap();
+    let whole = picture(&scene, &Options::default());
     let crop = Crop { x: 7, y: 11, width: 20, height: 9 };
-    let part = picture(&world, &Options { crop: Some(crop), ..Options::default() });
+    let part = picture(&scene, &Options { crop: Some(crop), ..Options::default() });
     for y in 0..9 {
         for x in 0..20 {
             assert_eq!(part.pixels[y * 20 + x], whole.pixels[(y + 11) * 40 + x + 7]);
         }
     }
     let outside = Crop { x: 30, y: 0, width: 11, height: 1 };
-    assert!(render(&world, &Options { crop: Some(outside), ..Options::default() }).is_err());
+    assert!(render(&world, &Settings::of(&scene), &Options { crop: Some(outside), ..Options::default() }).is_err());
 }
 
 #[test]
 fn the_recorded_tree_of_every_pixel_adds_up_to_the_film() {
     for (name, scene) in first_light() {
         let world = World::new(&scene).unwrap();
-        let rendered = render(&world, &Options::default()).unwrap();
+        let rendered = render(&world, &Settings::of(&scene), &Options::default()).unwrap();
         let mut rays = 0;
         let [width, height] = scene.render.size;
         for y in 0..height {
             for x in 0..width {
-                let pixel = trace_pixel(&world, x, y).unwrap();
+                let pixel = trace_pixel(&world, &Settings::of(&scene), x, y).unwrap();
                 let [tree] = pixel.samples.as_slice() else { panic!("one sample, one tree") };
                 let film = rendered.film.pixels[(y * width + x) as usize];
                 assert_eq!((pixel.sum(), pixel.radiance), (film, film), "{name} at {x},{y}");
@@ -190,18 +192,21 @@ fn the_recorded_tree_of_every_pixel_adds_up_to_the_film() {
 
 #[test]
 fn a_generation_that_is_split_changes_nothing() {
-    let world = World::new(&hall_of_mirrors(12)).unwrap();
-    let whole = render(&world, &Options { tile_size: 33, threads: 1, ..Options::default() }).unwrap();
+    let scene = hall_of_mirrors(12);
+    let world = World::new(&scene).unwrap();
+    let whole =
+        render(&world, &Settings::of(&scene), &Options { tile_size: 33, threads: 1, ..Options::default() }).unwrap();
     let largest = whole.statistics.depth.iter().max().copied().unwrap();
     assert!(largest > 1 << 17, "one tile, a budget of 2^16 rays, and not split: {:?}", whole.statistics.depth);
     for (x, y) in [(12, 12), (5, 20), (18, 7)] {
-        let alone = trace_pixel(&world, x, y).unwrap().radiance;
+        let alone = trace_pixel(&world, &Settings::of(&scene), x, y).unwrap().radiance;
         assert_eq!(alone, whole.film.pixels[(y * 24 + x) as usize]);
     }
-    let small = render(&world, &Options { tile_size: 8, ..Options::default() }).unwrap();
+    let small = render(&world, &Settings::of(&scene), &Options { tile_size: 8, ..Options::default() }).unwrap();
     assert!(small.film == whole.film && small.statistics == whole.statistics);
     for lanes in LaneWidth::ALL {
-        let split = render(&world, &Options { tile_size: 33, lanes, ..Options::default() }).unwrap();
+        let split =
+            render(&world, &Settings::of(&scene), &Options { tile_size: 33, lanes, ..Options::default() }).unwrap();
         assert!(split.film == whole.film && split.statistics == whole.statistics, "{lanes:?}");
     }
 }
@@ -209,16 +214,17 @@ fn a_generation_that_is_split_changes_nothing() {
 #[test]
 fn cancelling_keeps_what_is_done() {
     use std::sync::atomic::{AtomicBool, Ordering};
-    let world = World::new(&lecture("lecture/default", 64)).unwrap();
-    let whole = picture(&world, &Options::default());
+    let scene = lecture("lecture/default", 64);
+    let world = World::new(&scene).unwrap();
+    let whole = picture(&scene, &Options::default());
     let cancel = AtomicBool::new(false);
-    let progress = |p: snell::render::Progress| cancel.store(p.pixels >= 2048, Ordering::Relaxed);
+    let progress = |p: snell::render::Progress| cancel.store(p.samples >= 2048, Ordering::Relaxed);
     let options = Options { threads: 1, progress: Some(&progress), cancel: Some(&cancel), ..Options::default() };
     // Into new memory, and into that of another picture, which must not shine through.
     let mut again = whole.clone();
-    render_into(&mut again, &world, &options).unwrap();
+    render_into(&mut again, &world, &Settings::of(&scene), &options).unwrap();
     cancel.store(false, Ordering::Relaxed);
-    for part in [picture(&world, &options), again] {
+    for part in [picture(&scene, &options), again] {
         assert_eq!(part.finished.iter().filter(|&&f| f).count(), 2048);
         for (i, &finished) in part.finished.iter().enumerate() {
             assert_eq!(part.pixels[i], if finished { whole.pixels[i] } else { Rgb::gray(0.0) });
@@ -229,13 +235,14 @@ fn cancelling_keeps_what_is_done() {
 #[test]
 fn a_film_is_used_again() {
     let worlds = [("lecture/default", 64), ("lecture/quarter", 64), ("lecture/default", 40)];
-    let worlds = worlds.map(|(name, size)| World::new(&lecture(name, size)).unwrap());
-    let mut film = picture(&worlds[0], &Options::default());
+    let scenes = worlds.map(|(name, size)| lecture(name, size));
+    let mut film = picture(&scenes[0], &Options::default());
     let crop = Some(Crop { x: 3, y: 20, width: 40, height: 17 });
     for options in [Options::default(), Options { crop, ..Options::default() }] {
-        for world in &worlds {
-            if render_into(&mut film, world, &options).is_ok() {
-                assert!(film == picture(world, &options));
+        for scene in &scenes {
+            let world = World::new(scene).unwrap();
+            if render_into(&mut film, &world, &Settings::of(scene), &options).is_ok() {
+                assert!(film == picture(scene, &options));
             }
         }
     }

@@ -45,7 +45,7 @@ fn a_ball_of_8_cm_is_seen_whole_and_bends_light() {
     let world = World::new(&scene).unwrap();
     let mut met = 0;
     for (x, y) in (0..64 * 64).map(|i| (i % 64, i / 64)) {
-        let (radiance, tree) = traced(&world, x, y);
+        let (radiance, tree) = traced(&scene, &world, x, y);
         let first = &tree.nodes[0];
         assert_eq!(first.origin, eye);
         let impact = (center - eye).cross(first.dir).length() / radius;
@@ -236,7 +236,7 @@ fn at_scale((_, settings, view, objects): (&str, &str, &str, &str), factor: f64)
 fn shows_the_thing(scene: &Scene) -> bool {
     let world = World::new(scene).unwrap();
     let shown = (0..64 * 64).filter(|i| {
-        let pixel = snell::render::trace_pixel(&world, i % 64, i / 64).unwrap();
+        let pixel = snell::render::trace_pixel(&world, &snell::render::Settings::of(scene), i % 64, i / 64).unwrap();
         let hit = pixel.samples[0].nodes[0].hit.as_ref();
         hit.and_then(|hit| world.object_of(hit.primitive)).is_some_and(|object| object.name == "thing")
     });

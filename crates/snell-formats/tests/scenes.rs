@@ -7,7 +7,7 @@ mod common;
 use common::{alike, ball, close, furnace, glass, picture, tree};
 use snell::film::Rgb;
 use snell::geometry::Vec3;
-use snell::render::{Options, render, trace_pixel};
+use snell::render::{Options, Settings, render, trace_pixel};
 use snell::scene::{Camera, Cuboid, Light, Material, Plane, Scene, Shadows, Sky, Sphere, Texture, Transform};
 use snell::texture::Image;
 use snell::world::World;
@@ -74,10 +74,10 @@ fn samples_are_their_trees_mean() {
     for spp in [1, 3, 4] {
         scene.render.spp = spp;
         let world = World::new(&scene).unwrap();
-        let rendered = render(&world, &Options::default()).unwrap();
+        let rendered = render(&world, &Settings::of(&scene), &Options::default()).unwrap();
         assert_eq!(rendered.statistics.rays.camera, u64::from(spp) * 144);
         for pixel in 0..144 {
-            let traced = trace_pixel(&world, pixel % 12, pixel / 12).unwrap();
+            let traced = trace_pixel(&world, &Settings::of(&scene), pixel % 12, pixel / 12).unwrap();
             assert_eq!(traced.samples.len(), spp as usize);
             let film = rendered.film.pixels[pixel as usize];
             assert_eq!((traced.sum(), traced.radiance), (film, film));

@@ -170,7 +170,7 @@ fn plates_of_all_sizes_let_the_same_light_through() {
             bounds,
             -0.1 * factor,
         );
-        let found = common::traced(&World::new(&scene).unwrap(), 0, 0).0.r;
+        let found = common::traced(&scene, &World::new(&scene).unwrap(), 0, 0).0.r;
         // Far away coordinates are known to 1e-10, and the normals of the plate as well.
         let tolerance = if offset == 0.0 { 1e-11 } else { 1e-8 };
         assert!((found - known).abs() < tolerance, "{found} for {known}, times {factor} plus {offset}");

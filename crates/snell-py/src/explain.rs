@@ -75,7 +75,7 @@ pub fn find<'py>(py: Python<'py>, ready: &Ready, object: &str, progress: Option<
         let message = format!("no object is called `{object}`");
         return Err(raise(py, "SceneError", vec![(None, message, Some(known_names(object, known)))]));
     }
-    let work = watched(py, ready, 0, None, progress, |options| find_object(world, scene, object, options));
+    let work = watched(py, 0, None, progress, |options| find_object(world, scene, object, options));
     let Sightings { paths, mask } = unless_stopped(work)?;
     let paths = paths.into_iter().map(|(path, pixels)| (path.to_string(), pixels)).collect();
     let [width, height] = world.camera.size.map(|length| length as usize);

@@ -13,7 +13,7 @@ use serde_json::json;
 use snell::explain::{Channels, Names, ViewScene, black_picture, channels, hits};
 use snell::film::transfer::{Encoding, Rounding, Transfer};
 use snell::film::{Crop, Film, Rgb};
-use snell::render::{RenderError, Rendered, render};
+use snell::render::{RenderError, Rendered, Settings, render};
 use snell::scene::Warning;
 use snell_formats::picture::{self, Format};
 use snell_formats::{Report, disk};
@@ -35,7 +35,9 @@ impl NativePicture {
     /// Renders, and ^C ends it with what is done by then.
     pub fn render(py: Python<'_>, ready: Arc<Ready>, threads: usize, progress: Option<&Py<PyAny>>) -> PyResult<Self> {
         let started = Instant::now();
-        let (rendered, stopped) = watched(py, &ready, threads, None, progress, |options| render(&ready.world, options));
+        let (rendered, stopped) = watched(py, threads, None, progress, |options| {
+            render(&ready.world, &Settings::of(&ready.scene), options)
+        });
         let seconds = started.elapsed().as_secs_f64();
         match stopped {
             Some(error) if !error.is_instance_of::<PyKeyboardInterrupt>(py) => return Err(error),
@@ -43,7 +45,7 @@ impl NativePicture {
         }
         let failed = |error: RenderError| raise(py, "RenderError", vec![(None, error.to_string(), None)]);
         let Rendered { film, statistics } = rendered.map_err(failed)?;
-        let mut warnings = statistics.warnings(&ready.world, film.pixels.len() as u64);
+        let mut warnings = statistics.warnings(&ready.world, &Settings::of(&ready.scene));
         warnings.extend(black_picture(&Names { world: &ready.world, scene: &ready.scene }, &film));
         Ok(Self { film, ready, seconds, rays: statistics.rays.total(), warnings })
     }
@@ -54,8 +56,7 @@ impl NativePicture {
     }
 
     fn encoding(&self) -> Encoding {
-        let render = &self.ready.world.render;
-        Encoding { transfer: render.transfer, rounding: render.rounding }
+        self.ready.scene.render.encoding()
     }
 
     /// What `snell render --from` needs to make it again, with the settings that the scene leaves out.
@@ -64,7 +65,7 @@ impl NativePicture {
         let hash = self.film.is_finished().then(|| disk::sha256(self.film.bytes()));
         let whole = self.film.crop.width == self.film.full_size[0] && self.film.crop.height == self.film.full_size[1];
         let crop = (!whole).then_some(self.film.crop);
-        let render = &self.ready.world.render;
+        let render = &self.ready.scene.render;
         json!({
             "snell": env!("CARGO_PKG_VERSION"), "name": name, "kind": "json", "text": text, "folder": folder,
             "crop": crop, "spp": render.spp, "seed": render.seed, "depth": render.max_depth,
@@ -157,9 +158,9 @@ impl NativePicture {
 
     /// What the camera's rays met: depth, normal, number of the object; and the names of the objects.
     fn channels<'py>(&self, py: Python<'py>, progress: Option<Py<PyAny>>) -> PyResult<NativeChannels<'py>> {
-        let Ready { world, .. } = &*self.ready;
-        let crop = Some(self.film.crop);
-        let work = watched(py, &self.ready, 0, crop, progress.as_ref(), |options| channels(world, options));
+        let Ready { world, scene, .. } = &*self.ready;
+        let (crop, settings) = (Some(self.film.crop), Settings::of(scene));
+        let work = watched(py, 0, crop, progress.as_ref(), |options| channels(world, &settings, options));
         let Channels { depth, normal, object } = unless_stopped(work)?;
         let normal: Vec<f64> = normal.into_iter().flatten().collect();
         let [height, width] = self.shape();
@@ -173,9 +174,9 @@ impl NativePicture {
 
     /// How many surfaces the rays of each pixel met.
     fn hits<'py>(&self, py: Python<'py>, progress: Option<Py<PyAny>>) -> PyResult<Bound<'py, PyArray2<u32>>> {
-        let Ready { world, .. } = &*self.ready;
-        let crop = Some(self.film.crop);
-        let work = watched(py, &self.ready, 0, crop, progress.as_ref(), |options| hits(world, options));
+        let Ready { world, scene, .. } = &*self.ready;
+        let (crop, settings) = (Some(self.film.crop), Settings::of(scene));
+        let work = watched(py, 0, crop, progress.as_ref(), |options| hits(world, &settings, options));
         shaped(py, self.shape(), unless_stopped(work)?)
     }
 

@@ -1,6 +1,5 @@
 //! Work without Python's lock, which ^C ends.
 
-use crate::scene::Ready;
 use pyo3::prelude::*;
 use snell::film::Crop;
 use snell::render::{Options, Progress};
@@ -15,22 +14,23 @@ const LOOK: Duration = Duration::from_millis(50);
 /// that failed with, which has ended the work.
 pub fn watched<T: Send>(
     py: Python<'_>,
-    ready: &Ready,
     threads: usize,
     crop: Option<Crop>,
     progress: Option<&Py<PyAny>>,
     work: impl FnOnce(&Options<'_>) -> T + Send,
 ) -> (T, Option<PyErr>) {
     let cancel = AtomicBool::new(false);
-    let [pixels, rays] = [AtomicU64::new(0), AtomicU64::new(0)];
-    let [width, height] = crop.map_or(ready.world.camera.size, |c| [c.width, c.height]).map(u64::from);
+    let [samples, total, rays] = [AtomicU64::new(0), AtomicU64::new(0), AtomicU64::new(0)];
     let count = |done: Progress| {
-        pixels.fetch_max(done.pixels, Ordering::Relaxed);
+        total.store(done.total_samples, Ordering::Relaxed);
+        samples.fetch_max(done.samples, Ordering::Relaxed);
         rays.fetch_max(done.rays, Ordering::Relaxed);
     };
     let options = Options { threads, crop, progress: Some(&count), cancel: Some(&cancel), ..Options::default() };
     let tell = |py: Python<'_>| {
-        let seen = (pixels.load(Ordering::Relaxed), width * height, rays.load(Ordering::Relaxed));
+        let seen = (samples.load(Ordering::Relaxed), total.load(Ordering::Relaxed), rays.load(Ordering::Relaxed));
+        // Nothing is finished yet.
+        let progress = progress.filter(|_| seen.1 > 0);
         progress.map_or(Ok(()), |progress| progress.call1(py, seen).map(drop))
     };
     let look = || Python::attach(|py| py.check_signals().and_then(|()| tell(py)));

@@ -12,6 +12,7 @@
 //! ```
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! use snell::film::Rgb;
+//! use snell::render::{Options, Settings, render};
 //! use snell::scene::{Camera, Integrator, Light, Material, Render, Scene, Sphere};
 //!
 //! let camera = Camera::new([0.0, 0.0, 10.0], [0.0; 3], [0.0, 1.0, 0.0], [-1.0, 1.0, -1.0, 1.0], -5.0);
@@ -23,7 +24,7 @@
 //!     ..Scene::new(Render::new(Integrator::Lecture, [32, 32]), camera)
 //! };
 //! let world = snell::world::World::new(&scene).map_err(|problems| problems[0].to_string())?;
-//! let rendered = snell::render::render(&world, &snell::render::Options::default())?;
+//! let rendered = render(&world, &Settings::of(&scene), &Options::default())?;
 //! let center = rendered.film.pixels[16 * 32 + 16];
 //! assert!(center.r > 0.4 && center.g == 0.0, "{center:?}");
 //! # Ok(())
@@ -33,6 +34,7 @@
 pub mod explain;
 pub mod film;
 pub mod geometry;
+mod integrate;
 pub mod lanes;
 mod memory;
 pub mod optics;

@@ -1,6 +1,6 @@
 //! The settings that must not change a bit.
 
-use snell::render::{LaneWidth, Options, Rendered, render};
+use snell::render::{LaneWidth, Options, Rendered, Settings, render};
 use snell::scene::Scene;
 use snell::world::World;
 use snell_formats::disk::sha256;
@@ -16,7 +16,8 @@ pub const TILE_SIZES: &[u32] = &[8, 16, 33];
 /// # Panics
 /// When the scene cannot be rendered.
 pub fn once(name: &str, scene: &Scene) -> String {
-    line(name, &rendered(&World::new(scene).unwrap(), &Options { threads: 1, ..Options::default() }))
+    let options = Options { threads: 1, ..Options::default() };
+    line(name, &rendered(&World::new(scene).unwrap(), &Settings::of(scene), &options))
 }
 
 /// Renders a scene with all lanes, tiles and the `threads` asked for, and without the tree.
@@ -24,10 +25,10 @@ pub fn once(name: &str, scene: &Scene) -> String {
 /// # Panics
 /// When two of the pictures or their statistics differ, and says which.
 pub fn all_ways(name: &str, scene: &Scene, threads: &[usize]) -> String {
-    let world = World::new(scene).unwrap();
-    let expected = rendered(&world, &Options { threads: 1, lanes: LaneWidth::One, ..Options::default() });
+    let (world, settings) = (World::new(scene).unwrap(), Settings::of(scene));
+    let expected = rendered(&world, &settings, &Options { threads: 1, lanes: LaneWidth::One, ..Options::default() });
     let same = |world: &World, options: Options<'_>, tree: &str| {
-        let actual = rendered(world, &options);
+        let actual = rendered(world, &settings, &options);
         let different = different_pixels(&expected, &actual);
         assert!(different.is_empty(), "{name}, {tree}, {options:?}: other pixels at {different:?}");
         assert_eq!(actual.statistics, expected.statistics, "{name}, {tree}, {options:?}");
@@ -44,8 +45,8 @@ pub fn all_ways(name: &str, scene: &Scene, threads: &[usize]) -> String {
     line(name, &expected)
 }
 
-fn rendered(world: &World, options: &Options<'_>) -> Rendered {
-    let rendered = render(world, options).unwrap();
+fn rendered(world: &World, settings: &Settings, options: &Options<'_>) -> Rendered {
+    let rendered = render(world, settings, options).unwrap();
     assert!(rendered.film.is_finished());
     rendered
 }

@@ -8,7 +8,7 @@ use crate::say::{OrFail, Outcome, SCENE, tell};
 use snell::explain::text::{head, mean, numbers, swatch};
 use snell::explain::{Path, by_path};
 use snell::film::Rgb;
-use snell::render::trace_pixel;
+use snell::render::{Settings, trace_pixel};
 use snell::scene::Scene;
 use std::fmt::Write;
 
@@ -70,7 +70,7 @@ fn remove(scene: &mut Scene, object: &str) {
 }
 
 fn paths(asked: &Asked, x: u32, y: u32) -> Vec<(Path, Rgb)> {
-    trace_pixel(&asked.world, x, y).map_or(Vec::new(), |trace| by_path(&asked.names(), &trace))
+    trace_pixel(&asked.world, &Settings::of(&asked.loaded.scene), x, y).map_or(Vec::new(), |trace| by_path(&asked.names(), &trace))
 }
 
 /// All paths of both, those that changed most first.

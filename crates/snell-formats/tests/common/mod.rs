@@ -5,7 +5,7 @@
 
 use snell::film::{Film, Rgb};
 use snell::geometry::{TriangleMesh, Vec3};
-use snell::render::{Options, render, trace_pixel};
+use snell::render::{Options, Settings, render, trace_pixel};
 use snell::scene::{
     Camera, Integrator, Lathe, Light, Material, Mesh, Plane, Render, Scene, Sphere, Texture, Transfer, Transform,
 };
@@ -38,12 +38,12 @@ pub fn mesh(scene: &mut Scene, geometry: TriangleMesh, material: &str) {
 }
 
 pub fn picture(scene: &Scene) -> Film {
-    render(&World::new(scene).unwrap(), &Options::default()).unwrap().film
+    render(&World::new(scene).unwrap(), &Settings::of(scene), &Options::default()).unwrap().film
 }
 
 /// A pixel of one sample, and its tree.
-pub fn traced(world: &World, x: u32, y: u32) -> (Rgb, RayTree) {
-    let mut pixel = trace_pixel(world, x, y).unwrap();
+pub fn traced(scene: &Scene, world: &World, x: u32, y: u32) -> (Rgb, RayTree) {
+    let mut pixel = trace_pixel(world, &Settings::of(scene), x, y).unwrap();
     (pixel.radiance, pixel.samples.remove(0))
 }
 
@@ -55,7 +55,7 @@ pub fn tree(scene: &Scene, origin: [f64; 3], dir: [f64; 3]) -> RayTree {
     let look_at = eye + dir;
     let up = if dir.y.abs() > 0.9 { [0.0, 0.0, 1.0] } else { [0.0, 1.0, 0.0] };
     scene.camera = Camera::new(origin, look_at.into(), up, [-1.0, 1.0, -1.0, 1.0], -1.0);
-    traced(&World::new(&scene).unwrap(), 0, 0).1
+    traced(&scene, &World::new(&scene).unwrap(), 0, 0).1
 }
 
 /// Origin and direction of the ray that was refracted at every interface, and how often.

@@ -1,7 +1,7 @@
 //! What the rays of each pixel met: distances, normals, objects; and how many surfaces.
 
 use super::survey::rows;
-use crate::render::Options;
+use crate::render::{Options, PixelTracer, Settings};
 use crate::trace::PixelTrace;
 use crate::world::World;
 
@@ -17,13 +17,11 @@ pub struct Channels {
     pub object: Vec<i32>,
 }
 
-/// Of a whole picture or its crop; `None` if cancelled.
-pub fn channels(world: &World, options: &Options<'_>) -> Option<Channels> {
-    // Nothing behind the first surface matters.
-    let mut shallow = world.clone();
-    shallow.render.max_depth = 0;
+/// Of a whole picture or its crop; `None` if cancelled, or if the world was compiled for other models of light.
+pub fn channels(world: &World, settings: &Settings, options: &Options<'_>) -> Option<Channels> {
+    let tracer = || PixelTracer::of_first_hits(world, settings);
     let mut channels = Channels::default();
-    for (depth, normal, object) in rows(&shallow, options, |trace| first_hit(world, trace))? {
+    for (depth, normal, object) in rows(world, tracer, options, |trace| first_hit(world, trace))? {
         channels.depth.push(depth);
         channels.normal.push(normal);
         channels.object.push(object);
@@ -39,10 +37,15 @@ fn first_hit(world: &World, trace: &PixelTrace) -> (f64, [f64; 3], i32) {
     })
 }
 
-/// How many surfaces all rays of each pixel met, those to lights apart; `None` if cancelled.
-pub fn hits(world: &World, options: &Options<'_>) -> Option<Vec<u32>> {
-    rows(world, options, |trace| {
-        let nodes = trace.samples.iter().flat_map(|sample| &sample.nodes);
-        nodes.filter(|node| node.hit.is_some()).count() as u32
-    })
+/// How many surfaces all rays of each pixel met, those to lights apart; `None` as for [`channels`].
+pub fn hits(world: &World, settings: &Settings, options: &Options<'_>) -> Option<Vec<u32>> {
+    rows(
+        world,
+        || PixelTracer::new(world, settings),
+        options,
+        |trace| {
+            let nodes = trace.samples.iter().flat_map(|sample| &sample.nodes);
+            nodes.filter(|node| node.hit.is_some()).count() as u32
+        },
+    )
 }

@@ -8,7 +8,7 @@ use crate::film::Rgb;
 use crate::film::transfer::Transfer;
 use crate::render::trace_pixel;
 use crate::scene::{Integrator, Scene};
-use crate::trace::{Ended, Hit, Node, PixelTrace, RayKind, RayTree};
+use crate::trace::{Ended, Hit, Node, PixelTrace, RayKind, RayTree, Settings};
 use crate::world::World;
 use serde::Serialize;
 
@@ -186,19 +186,19 @@ pub struct ExplainedLight {
 /// Explains a pixel, by column and row from the top left; `None` where the picture has no such pixel. The second is what it was
 /// made of.
 pub fn explain(world: &World, scene: &Scene, name: &str, x: u32, y: u32) -> Option<(Explanation, PixelTrace)> {
-    let trace = trace_pixel(world, x, y)?;
+    let trace = trace_pixel(world, &Settings::of(scene), x, y)?;
     let names = Names { world, scene };
-    let bound = bound::per_throughput(world);
+    let bound = bound::per_throughput(world, scene.render.integrator);
     let samples = trace.samples.iter().map(|tree| sample(&names, bound, tree)).collect();
     let explanation = Explanation {
         snell_ray_tree: VERSION,
         scene: name.to_owned(),
-        integrator: world.render.integrator,
+        integrator: scene.render.integrator,
         pixel: [x, y],
         size: world.camera.size,
         color: trace.radiance.to_array(),
-        transfer: world.render.transfer,
-        spp: world.render.spp,
+        transfer: scene.render.transfer,
+        spp: scene.render.spp,
         sentence: sentence::of(&names, &trace),
         samples,
     };

@@ -2,7 +2,7 @@
 
 use super::{Names, Path};
 use crate::film::{Crop, Rgb};
-use crate::render::{Options, PixelTracer, Progress};
+use crate::render::{Options, PixelTracer, Progress, Settings};
 use crate::scene::Scene;
 use crate::threads;
 use crate::trace::{PixelTrace, mean};
@@ -33,31 +33,33 @@ pub struct Sightings {
 
 /// What each pixel's trees are made into, row by row; `None` if that was cancelled. Of the options only the tiles and the lanes
 /// do not matter.
-pub(super) fn rows<T: Send>(
+pub(super) fn rows<'a, T: Send>(
     world: &World,
+    tracer: impl Fn() -> Option<PixelTracer<'a>> + Sync,
     options: &Options<'_>,
     of: impl Fn(&PixelTrace) -> T + Sync,
 ) -> Option<Vec<T>> {
     let [width, height] = world.camera.size;
     let crop = options.crop.unwrap_or(Crop { x: 0, y: 0, width, height });
-    let total_pixels = u64::from(crop.width) * u64::from(crop.height);
-    let [pixels, rays] = [AtomicU64::new(0), AtomicU64::new(0)];
+    let total_samples = u64::from(crop.width) * u64::from(crop.height);
+    let [samples, rays] = [AtomicU64::new(0), AtomicU64::new(0)];
     let cancelled = || options.cancel.is_some_and(|cancel| cancel.load(Ordering::Relaxed));
     let row = |y: u32| {
-        let mut tracer = PixelTracer::new(world);
+        let mut tracer = tracer()?;
         let columns = (crop.x..crop.x.saturating_add(crop.width)).take_while(|_| !cancelled());
         let row: Vec<T> = columns.filter_map(|x| tracer.trace(x, y)).map(|trace| of(&trace)).collect();
         if let Some(progress) = options.progress {
-            let pixels = pixels.fetch_add(row.len() as u64, Ordering::Relaxed) + row.len() as u64;
+            let samples = samples.fetch_add(row.len() as u64, Ordering::Relaxed) + row.len() as u64;
             let rays = rays.fetch_add(tracer.rays(), Ordering::Relaxed) + tracer.rays();
-            progress(Progress { pixels, total_pixels, rays });
+            progress(Progress { samples, total_samples, rays });
         }
-        row
+        Some(row)
     };
     let all = crop.y..crop.y.saturating_add(crop.height);
-    let rows: Vec<Vec<T>> = threads::share(options.threads, |parallel| {
+    let rows: Option<Vec<Vec<T>>> = threads::share(options.threads, |parallel| {
         if parallel { all.into_par_iter().map(row).collect() } else { all.map(row).collect() }
     });
+    let rows = rows?;
     (!cancelled()).then(|| rows.into_iter().flatten().collect())
 }
 
@@ -82,7 +84,9 @@ pub fn by_path(names: &Names<'_>, trace: &PixelTrace) -> Vec<(Path, Rgb)> {
 /// Splits a picture by paths: the `most` strongest of them, and the rest. `None` if cancelled.
 pub fn layers(world: &World, scene: &Scene, most: usize, options: &Options<'_>) -> Option<Layers> {
     let names = Names { world, scene };
-    let pixels = rows(world, options, |trace| (trace.radiance, by_path(&names, trace)))?;
+    let settings = Settings::of(scene);
+    let pixels =
+        rows(world, || PixelTracer::new(world, &settings), options, |trace| (trace.radiance, by_path(&names, trace)))?;
     let mut strength: IndexMap<&Path, f64> = IndexMap::new();
     for (path, color) in pixels.iter().flat_map(|(_, paths)| paths) {
         *strength.entry(path).or_insert(0.0) += color.mean().abs();
@@ -108,22 +112,34 @@ pub fn layers(world: &World, scene: &Scene, most: usize, options: &Options<'_>) 
 /// What one path alone adds to each pixel, row by row. `None` if cancelled.
 pub fn only(world: &World, scene: &Scene, path: &Path, options: &Options<'_>) -> Option<Vec<Rgb>> {
     let names = Names { world, scene };
-    rows(world, options, |trace| {
-        let all = by_path(&names, trace);
-        all.into_iter().find(|(other, _)| other == path).map_or(Rgb::gray(0.0), |(_, color)| color)
-    })
+    let settings = Settings::of(scene);
+    rows(
+        world,
+        || PixelTracer::new(world, &settings),
+        options,
+        |trace| {
+            let all = by_path(&names, trace);
+            all.into_iter().find(|(other, _)| other == path).map_or(Rgb::gray(0.0), |(_, color)| color)
+        },
+    )
 }
 
 /// Where an object is seen, directly or by others. A pixel counts once for each path that it has. `None` if cancelled.
 pub fn find(world: &World, scene: &Scene, object: &str, options: &Options<'_>) -> Option<Sightings> {
     let names = Names { world, scene };
-    let pixels = rows(world, options, |trace| {
-        let all = by_path(&names, trace);
-        let total: f64 = all.iter().map(|(_, color)| color.mean().abs()).sum();
-        let seen: Vec<(Path, Rgb)> = all.into_iter().filter(|(path, _)| path.end == object).collect();
-        let share: f64 = seen.iter().map(|(_, color)| color.mean().abs()).sum();
-        (seen, if total > 0.0 { share / total } else { 0.0 })
-    })?;
+    let settings = Settings::of(scene);
+    let pixels = rows(
+        world,
+        || PixelTracer::new(world, &settings),
+        options,
+        |trace| {
+            let all = by_path(&names, trace);
+            let total: f64 = all.iter().map(|(_, color)| color.mean().abs()).sum();
+            let seen: Vec<(Path, Rgb)> = all.into_iter().filter(|(path, _)| path.end == object).collect();
+            let share: f64 = seen.iter().map(|(_, color)| color.mean().abs()).sum();
+            (seen, if total > 0.0 { share / total } else { 0.0 })
+        },
+    )?;
     let mut paths: IndexMap<Path, u64> = IndexMap::new();
     for (path, _) in pixels.iter().flat_map(|(seen, _)| seen) {
         *paths.entry(path.clone()).or_insert(0) += 1;

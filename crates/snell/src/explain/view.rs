@@ -104,6 +104,6 @@ impl ViewScene {
             corners: world.camera.corners().map(Into::into),
             up: world.camera.axes[1].into(),
         };
-        Self { snell_view: 1, transfer: world.render.transfer, spheres, meshes, camera, lights: lights.collect() }
+        Self { snell_view: 1, transfer: names.scene.render.transfer, spheres, meshes, camera, lights: lights.collect() }
     }
 }

@@ -1,5 +1,6 @@
 //! Linear colour.
 
+use crate::lanes::table::Field;
 use crate::lanes::{Lanes, MAX_WIDTH};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Error, SeqAccess, Visitor};
@@ -60,6 +61,18 @@ impl<L> From<Rgb<L>> for [L; 3] {
     #[inline(always)]
     fn from(c: Rgb<L>) -> Self {
         [c.r, c.g, c.b]
+    }
+}
+
+impl<L: Lanes> Field<L> for Rgb<L> {
+    const COLUMNS: usize = 3;
+    #[inline(always)]
+    fn from_columns(columns: &[L]) -> Self {
+        Self::new(columns[0], columns[1], columns[2])
+    }
+    #[inline(always)]
+    fn to_columns(self, columns: &mut [L]) {
+        columns[..3].copy_from_slice(&[self.r, self.g, self.b]);
     }
 }
 

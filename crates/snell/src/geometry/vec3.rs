@@ -1,10 +1,11 @@
 //! Three-dimensional vectors, one or several lanes wide.
 
+use crate::lanes::table::Field;
 use crate::lanes::{Lanes, MAX_WIDTH};
 use std::ops::{Add, Mul, Neg, Sub};
 
 /// A point, direction or normal. `L` is `f64`, or several lanes of it.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Vec3<L = f64> {
     /// Component along the first axis.
     pub x: L,
@@ -53,6 +54,18 @@ impl<L> From<Vec3<L>> for [L; 3] {
     #[inline(always)]
     fn from(v: Vec3<L>) -> Self {
         [v.x, v.y, v.z]
+    }
+}
+
+impl<L: Lanes> Field<L> for Vec3<L> {
+    const COLUMNS: usize = 3;
+    #[inline(always)]
+    fn from_columns(columns: &[L]) -> Self {
+        Self::new(columns[0], columns[1], columns[2])
+    }
+    #[inline(always)]
+    fn to_columns(self, columns: &mut [L]) {
+        columns[..3].copy_from_slice(&[self.x, self.y, self.z]);
     }
 }
 

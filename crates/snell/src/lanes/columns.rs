@@ -135,6 +135,21 @@ impl<const N: usize> Columns<N> {
         self.len += count;
     }
 
+    /// Appends the lanes that the mask names, of the first `used` columns only, in lane order.
+    #[inline(always)]
+    pub fn push_first<L: Lanes>(&mut self, used: usize, mask: L::Mask, value: impl Fn(usize) -> L) {
+        assert!(used <= N, "no column {used}");
+        self.reserve(L::WIDTH);
+        let (start, room, count) = (self.len, self.room, mask.bits().count_ones() as usize);
+        for column in 0..used {
+            let value = if count == L::WIDTH { value(column) } else { value(column).compress(mask) };
+            let at = column * room + start;
+            // SAFETY: there are `N` columns of `room` numbers, `used` is not more, and `reserve` has left room behind `len`.
+            value.store(unsafe { self.values_mut().get_unchecked_mut(at..at + L::WIDTH) });
+        }
+        self.len += count;
+    }
+
     /// Appends all rows of another table.
     #[inline(always)]
     pub fn append(&mut self, other: &Self) {

@@ -39,6 +39,7 @@ mod neon;
 mod pow;
 mod scalar;
 mod sort;
+pub(crate) mod table;
 #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
 mod wasm;
 mod width;
@@ -49,6 +50,7 @@ pub use array::ArrayLanes;
 pub(crate) use columns::Columns;
 pub use exp::exp;
 pub use pow::pow;
+pub(crate) use table::{Number, Record, Row, Table, record, table};
 pub use width::{LaneWidth, dispatch};
 
 use std::fmt::Debug;

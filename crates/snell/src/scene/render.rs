@@ -1,6 +1,6 @@
 //! How a picture is made.
 
-use crate::film::transfer::{Rounding, Transfer};
+use crate::film::transfer::{Encoding, Rounding, Transfer};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -56,6 +56,11 @@ impl Render {
         }
     }
 
+    /// How colours become 8 or 16 bit.
+    pub fn encoding(&self) -> Encoding {
+        Encoding { transfer: self.transfer, rounding: self.rounding }
+    }
+
     /// What stands between a surface and a light, also where that is left out.
     pub fn shadows(&self) -> Shadows {
         self.shadows.unwrap_or(match self.integrator {
@@ -82,6 +87,11 @@ pub enum Integrator {
 impl Integrator {
     /// Do camera rays start at the eye? In the models of the lecture and the course they start on the image plane.
     pub fn starts_at_eye(self) -> bool {
+        self == Self::Whitted
+    }
+
+    /// Are rays followed through solids, from medium to medium?
+    pub fn has_media(self) -> bool {
         self == Self::Whitted
     }
 }

@@ -1,28 +1,26 @@
 //! The first generation: the camera rays of a tile. They are made where they are needed, and never stored.
 
-use super::lecture::T_MIN;
-use super::media::{Media, OUTSIDE, WHITE};
-use super::queue::{Generation, Load, Weight};
-use super::sampler;
-use crate::film::{Crop, Rgb};
+use super::carried::{Carried, CarriedByAll};
+use super::queue::Generation;
+use super::{Propagation, Tile, sampler};
 use crate::geometry::{Sphere, Vec3, sphere};
-use crate::lanes::{Columns, Lanes};
-use crate::scene::Integrator;
-use crate::world::{CameraFrame, World};
+use crate::lanes::{Columns, Lanes, Record, Row};
+use crate::world::{CameraFrame, JITTER};
+use std::marker::PhantomData;
 
 /// One ray for each pixel of a tile, row by row. They carry everything and come from nowhere.
 #[derive(Clone, Debug)]
-pub(crate) struct CameraRays<'a> {
+pub(crate) struct CameraRays<'a, P> {
     camera: &'a CameraFrame,
     /// For each pixel its place on the image plane: across and up.
     places: Columns<2>,
     /// The set of the solids in which they start.
-    medium: f64,
-    /// No hit nearer than this counts.
-    t_min: f64,
+    medium: u32,
+    carried: CarriedByAll,
     /// The seed by which samples are spread; `None` where each is its pixel's point of the grid.
-    spread: Option<u32>,
+    jitter: Option<u32>,
     cone: Cone,
+    propagation: PhantomData<P>,
 }
 
 /// A cone around all rays of a tile, with its tip in the eye.
@@ -37,48 +35,43 @@ struct Cone {
     near: f64,
 }
 
-impl<'a> CameraRays<'a> {
-    pub fn new(world: &'a World) -> Self {
-        let t_min = if world.render.integrator == Integrator::Whitted { 0.0 } else { T_MIN };
-        let spread = (world.render.spp > 1).then_some(world.render.seed);
+impl<'a, P: Propagation> CameraRays<'a, P> {
+    /// Of a camera that stands in these solids. Without a seed to spread them by, samples look through the points of the grid.
+    pub fn new(camera: &'a CameraFrame, medium: u32, carried: CarriedByAll, jitter: Option<u32>) -> Self {
         let (places, cone) = (Columns::default(), Cone::default());
-        Self { camera: &world.camera, places, medium: f64::from(OUTSIDE), t_min, spread, cone }
+        Self { camera, places, medium, carried, jitter, cone, propagation: PhantomData }
     }
 
     /// Takes a sample of each pixel of a tile.
-    pub fn aim(&mut self, tile: &Crop, sample: u32, media: &Media<'_>) {
-        self.medium = f64::from(media.eye());
-        self.place(tile, sample);
-    }
-
-    fn place(&mut self, tile: &Crop, sample: u32) {
+    pub fn aim(&mut self, tile: &Tile, sample: u32) {
         self.places.clear();
-        self.places.resize(tile.width as usize * tile.height as usize);
+        self.places.resize(tile.len());
         let [across, up] = self.places.columns_mut();
-        let rows = across.chunks_mut(tile.width as usize).zip(up.chunks_mut(tile.width as usize));
-        for (y, (across, up)) in (tile.y..).zip(rows) {
-            let Some(seed) = self.spread else {
+        let width = tile.width as usize;
+        let rows = across.chunks_mut(width).zip(up.chunks_mut(width));
+        for ((across, up), y) in rows.zip(tile.rows()) {
+            let Some(seed) = self.jitter else {
                 up.fill(self.camera.up(y.into()));
-                for (x, place) in (tile.x..).zip(across) {
+                for (place, x) in across.iter_mut().zip(tile.columns()) {
                     *place = self.camera.across(x.into());
                 }
                 continue;
             };
-            for (x, (across, up)) in (tile.x..).zip(across.iter_mut().zip(up)) {
+            for ((across, up), x) in across.iter_mut().zip(up).zip(tile.columns()) {
                 let [right, down] = sampler::offset(seed, [x, y], sample);
                 (*across, *up) = (self.camera.across(f64::from(x) + right), self.camera.up(f64::from(y) + down));
             }
         }
-        self.cone = Cone::around(self.camera, tile);
+        self.cone = Cone::around(self.camera, tile, if self.jitter.is_some() { JITTER } else { 0.0 });
     }
 }
 
 impl Cone {
     /// A cone that holds the four corners of a tile holds all between them, as it is convex.
-    fn around(camera: &CameraFrame, tile: &Crop) -> Self {
-        let ends = |start: u32, length: u32| {
-            [f64::from(start) - camera.spread(), f64::from(start + (length - 1)) + camera.spread()]
-        };
+    /// Samples are at most `jitter` of a pixel's width from its point of the grid.
+    fn around(camera: &CameraFrame, tile: &Tile, jitter: f64) -> Self {
+        let ends =
+            |first: u32, count: u32| [f64::from(first) - jitter, f64::from(first + (count - 1) * tile.step) + jitter];
         let [left, right] = ends(tile.x, tile.width).map(|x| camera.across(x));
         let [top, bottom] = ends(tile.y, tile.height).map(|y| camera.up(y));
         let (middle, axis) = camera.rays::<f64>((left + right) * 0.5, (top + bottom) * 0.5);
@@ -109,7 +102,7 @@ impl Cone {
     }
 }
 
-impl Generation for CameraRays<'_> {
+impl<P: Propagation> Generation<P> for CameraRays<'_, P> {
     #[inline(always)]
     fn len(&self) -> usize {
         self.places.len()
@@ -117,33 +110,43 @@ impl Generation for CameraRays<'_> {
 
     #[inline(always)]
     fn counts(&self) -> [usize; 3] {
-        [self.len(), 0, 0]
+        [self.places.len(), 0, 0]
     }
 
     #[inline(always)]
-    fn ways<L: Lanes>(&self, start: usize) -> (Vec3<L>, Vec3<L>) {
+    fn lines<L: Lanes>(&self, start: usize) -> (Vec3<L>, Vec3<L>) {
         let [across, up] = self.places.group(0, start);
         self.camera.rays(across, up)
     }
 
     #[inline(always)]
-    fn loads<L: Lanes>(&self, start: usize) -> Load<L> {
-        let white = Rgb::gray(1.0).splat();
-        Load {
-            weight: Weight { attenuation: white, factor: white },
-            t_min: L::splat(self.t_min),
-            source: L::splat(-1.0),
-            parent: L::splat(0.0),
-            pixel: L::ramp(start),
-            medium: L::splat(self.medium),
-            band: L::splat(f64::from(WHITE)),
-            back: Vec3::default().splat(),
-        }
+    fn sources<L: Lanes>(&self, _start: usize) -> L {
+        L::splat(-1.0)
     }
 
     #[inline(always)]
-    fn pixel(&self, row: usize) -> usize {
-        row
+    fn parents<L: Lanes>(&self, _start: usize) -> L {
+        L::splat(0.0)
+    }
+
+    #[inline(always)]
+    fn pixels<L: Lanes>(&self, start: usize) -> L {
+        L::ramp(start)
+    }
+
+    #[inline(always)]
+    fn travel<L: Lanes>(&self, _start: usize) -> Row<P::Travel, L> {
+        P::from_camera(self.medium)
+    }
+
+    #[inline(always)]
+    fn carried<L: Lanes, T: Record>(&self, _start: usize) -> Row<T, L> {
+        self.carried.rows::<L, T>()
+    }
+
+    #[inline(always)]
+    fn copy_carried<L: Lanes>(&self, mask: L::Mask, _start: usize, to: &mut Carried) {
+        to.push_same::<L>(mask, &self.carried);
     }
 
     fn may_meet(&self, sphere: &Sphere) -> bool {
@@ -154,15 +157,14 @@ impl Generation for CameraRays<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Camera, Render};
+    use crate::scene::{Camera, Integrator, Render};
+    use crate::trace::FirstSurface;
     use proptest::prelude::*;
 
-    /// The rays of a tile, of a camera without a world.
-    fn through<'a>(camera: &'a CameraFrame, tile: &Crop) -> CameraRays<'a> {
-        let spread = (camera.spread() > 0.0).then_some(5);
-        let (places, cone) = (Columns::default(), Cone::default());
-        let mut rays = CameraRays { camera, places, medium: 0.0, t_min: 0.0, spread, cone };
-        rays.place(tile, 3);
+    /// The rays of a tile.
+    fn through<'a>(camera: &'a CameraFrame, tile: &Tile, jitter: Option<u32>) -> CameraRays<'a, FirstSurface> {
+        let mut rays = CameraRays::new(camera, 0, CarriedByAll::new::<()>(&()), jitter);
+        rays.aim(tile, 3);
         rays
     }
 
@@ -176,18 +178,20 @@ mod tests {
             radius in prop_oneof![1e-6..1e-3f64, 0.1..9.0f64],
             corner in prop::array::uniform2(0..60u32),
             near in -3.0..-0.1f64,
-            spp in 1..3u32,
+            jitter in prop::option::of(0..9u32),
+            step in 1..5u32,
             integrator in prop::sample::select(vec![Integrator::Lecture, Integrator::Whitted]),
         ) {
             let moved = |p: [f64; 3]| p.map(|c| c + far);
             let bounds = [-1.0, 2.0, -2.0, 1.0];
             let camera = Camera::new(moved(eye), [far; 3], [0.1, 1.0, 0.2], bounds, near);
-            let frame = CameraFrame::new(&camera, &Render { spp, ..Render::new(integrator, [64, 64]) });
+            let frame = CameraFrame::new(&camera, &Render::new(integrator, [64, 64]));
             prop_assume!(frame.has_image_plane());
-            let rays = through(&frame, &Crop { x: corner[0], y: corner[1], width: 4, height: 3 });
+            let tile = Tile { x: corner[0], y: corner[1], step, width: 1 + 3 / step, height: 1 + 2 / step };
             let sphere = Sphere { center: moved(center).into(), radius };
+            let rays = through(&frame, &tile, jitter);
             for row in 0..rays.len() {
-                let (origin, dir) = rays.ways::<f64>(row);
+                let (origin, dir) = rays.lines::<f64>(row);
                 let (t, meets) = sphere::intersect(origin, dir, sphere.center, radius);
                 prop_assert!(rays.may_meet(&sphere) || !meets || t < 0.0);
             }
@@ -198,9 +202,10 @@ mod tests {
     fn a_cone_leaves_something_out() {
         let camera = Camera::new([0.0, 0.0, 10.0], [0.0; 3], [0.0, 1.0, 0.0], [-1.0, 1.0, -1.0, 1.0], -1.0);
         let frame = CameraFrame::new(&camera, &Render::new(Integrator::Lecture, [64, 64]));
-        let rays = through(&frame, &Crop { x: 0, y: 0, width: 16, height: 16 });
-        assert!(!rays.may_meet(&Sphere { center: Vec3::default(), radius: 2.0 }));
-        assert!(rays.may_meet(&Sphere { center: Vec3::new(-8.0, 8.0, 0.0), radius: 0.1 }));
-        assert!(!rays.may_meet(&Sphere { center: Vec3::new(8.0, -8.0, 20.0), radius: 0.1 }), "behind the eye");
+        let rays = through(&frame, &Tile { x: 0, y: 0, step: 1, width: 16, height: 16 }, None);
+        let may_meet = |center: Vec3, radius: f64| rays.may_meet(&Sphere { center, radius });
+        assert!(may_meet(Vec3::default(), 2.0));
+        assert!(may_meet(Vec3::new(-8.0, 8.0, 0.0), 0.1));
+        assert!(!may_meet(Vec3::new(8.0, -8.0, 20.0), 0.1), "behind the eye");
     }
 }

@@ -1,152 +1,176 @@
 //! One tile, from camera rays to finished pixels.
 
 use super::camera::CameraRays;
+use super::carried::CarriedByAll;
 use super::hits::Hits;
-use super::interfaces::{FindInterfaces, Ways};
-use super::lecture::{self, Blend};
-use super::media::{Media, WHITE};
-use super::observer::Observer;
-use super::queue::{Generation, RayKind, RayQueue};
-use super::shading::{self, ShadowRays};
-use super::statistics::Statistics;
-use super::tree::{Ended, mean};
-use super::whitted;
-use crate::film::{Crop, Rgb};
+use super::observer::{Observer, StateOf};
+use super::pairwise::{Block, PairwiseSum};
+use super::propagation::Propagation;
+use super::queue::{Children, Generation, RayQueue};
+use super::shading::{LocalColors, Scenery, ShadowRays};
+use super::statistics::{Statistics, lost_units};
+use super::tree::Ended;
+use super::{Settings, Tile};
+use crate::film::Rgb;
 use crate::geometry::bvh::Packet;
-use crate::lanes::{Kernel, Lanes, index};
-use crate::scene::Integrator;
+use crate::integrate::Integrator;
+use crate::lanes::{Kernel, Lanes, Mask};
 use crate::world::World;
+use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// A generation with more rays than this is split by pixels. It bounds the memory of the queues.
 const GENERATION_BUDGET: usize = 1 << 16;
 
 /// A pixel with more rays than this gets no more; the rest counts as lost light. It bounds the time that a pixel takes, and
-/// what its generation takes of memory: a ray has 21 numbers of 8 bytes, and more children may be made before they are
+/// what its generation takes of memory: a ray has up to 18 numbers of 8 bytes, and more children may be made before they are
 /// counted, twice as many, or one for each band of light.
 const RAYS_PER_PIXEL: u32 = 1 << 18;
 
 /// A worker: it owns the queues, which are used again for every tile.
 #[derive(Debug)]
-pub(crate) struct Tracer<'a, L, O> {
-    pub world: &'a World,
+pub(crate) struct Tracer<'a, L, O, I: Integrator> {
+    world: &'a World,
+    settings: &'a Settings,
+    integrator: I,
     /// Set by somebody else to stop as soon as possible.
     cancel: Option<&'a AtomicBool>,
     pub observer: O,
     pub statistics: Statistics,
-    /// Waits to be used again for the next tile.
-    camera_rays: Option<CameraRays<'a>>,
+    state: StateOf<'a, I>,
+    /// Absent only while they are traced.
+    camera_rays: Option<CameraRays<'a, I::Propagation>>,
     packet: Box<Packet>,
-    media: Media<'a>,
-    ways: Ways,
-    hits: Hits,
+    hits: Hits<I::Propagation>,
+    /// Which hits ask for lights, a bit for each.
+    asks: Vec<u64>,
     shadow: ShadowRays,
-    refracted: RayQueue,
-    /// Refracted rays of white ones that have split, by bands; none where nothing disperses.
-    bands: Vec<RayQueue>,
+    children: Children<I::Propagation>,
     /// Generations that wait: the depth and the rays.
-    waiting: Vec<(u32, RayQueue)>,
+    waiting: Vec<(u32, RayQueue<I::Propagation>)>,
     /// Queues that wait to be used again.
-    spare: Vec<RayQueue>,
-    tile: Crop,
+    spare: Vec<RayQueue<I::Propagation>>,
+    tile: Tile,
     /// For a sample of each pixel of the tile: radiance, number of rays, and the throughput it lost.
     radiance: Vec<Rgb>,
     rays_of: Vec<u32>,
     lost: Vec<Rgb>,
-    /// Of several samples the sum of their radiance.
-    sum: Vec<Rgb>,
-    /// What all samples lost without signs, which colours of single wavelengths have, as the mean of the three channels.
-    lost_sizes: Vec<f64>,
+    traced: TracedTile,
+    /// Sums that wait to be used again.
+    spare_sums: Vec<Vec<Rgb>>,
     lanes: std::marker::PhantomData<L>,
 }
 
-/// What the hits of a generation do in the physical model: a function of its own.
-struct Whitted<'b, 'a, L, O> {
-    tracer: &'b mut Tracer<'a, L, O>,
-    children: &'b mut RayQueue,
+/// What the samples of a tile add up to, pixel by pixel and row by row.
+#[derive(Debug, Default)]
+pub(crate) struct TracedTile {
+    /// Radiance.
+    pub sums: PairwiseSum<Vec<Rgb>>,
+    /// Lost light, in whole units.
+    pub lost: Vec<u64>,
 }
 
-impl<K: Lanes, O> Kernel for Whitted<'_, '_, K, O> {
+impl TracedTile {
+    /// What all samples add up to, if they are the first ones.
+    pub fn sum(&mut self) -> &[Rgb] {
+        let mut blocks = self.sums.blocks_mut().iter_mut().map(|(_, sum)| sum);
+        let Some(first) = blocks.next() else { return &[] };
+        for block in blocks {
+            add_to(first, block);
+        }
+        first
+    }
+}
+
+/// Adds colours to others, one by one.
+#[allow(clippy::ptr_arg, reason = "a function for `PairwiseSum`, whose sums are vectors")]
+pub(crate) fn add_to(sums: &mut Vec<Rgb>, others: &Vec<Rgb>) {
+    for (sum, &other) in sums.iter_mut().zip(others) {
+        *sum = *sum + other;
+    }
+}
+
+/// What the hits of a generation add, and the rays that leave them.
+struct Scatter<'b, 'a, I: Integrator> {
+    integrator: I,
+    world: &'a World,
+    state: &'b StateOf<'a, I>,
+    hits: &'b mut Hits<I::Propagation>,
+    children: &'b mut Children<I::Propagation>,
+}
+
+impl<I: Integrator> Kernel for Scatter<'_, '_, I> {
     type Output = ();
     #[inline(always)]
     fn run<L: Lanes>(self) {
-        let Self { tracer, children } = self;
-        for start in (0..tracer.hits.len()).step_by(L::WIDTH) {
-            let batch = tracer.hits.batch::<L>(tracer.world, start);
-            let (contribution, mirror, refracted) = whitted::answer(&batch, &tracer.media, &mut tracer.bands);
-            children.push(RayKind::Mirror, mirror.0, &mirror.1);
-            tracer.refracted.push(RayKind::Refracted, refracted.0, &refracted.1);
-            tracer.hits.set_contribution(start, contribution);
+        let Self { integrator, world, state, hits, children } = self;
+        for start in (0..hits.len()).step_by(L::WIDTH) {
+            let contribution = integrator.scatter(&hits.batch::<L>(world, start), state, children);
+            hits.set_contribution(start, contribution);
         }
     }
 }
 
-impl<'a, L: Lanes, O: Observer> Tracer<'a, L, O> {
-    pub fn new(world: &'a World, cancel: Option<&'a AtomicBool>, observer: O) -> Self {
+impl<'a, L: Lanes, O: Observer, I: Integrator> Tracer<'a, L, O, I> {
+    pub fn new(world: &'a World, settings: &'a Settings, cancel: Option<&'a AtomicBool>, observer: O) -> Self {
+        let state = I::Propagation::new(world);
+        let jitter = (settings.spp > 1).then_some(settings.seed);
+        let carried = CarriedByAll::new::<I::Carried>(&I::from_camera());
         Self {
             world,
+            settings,
+            integrator: I::new(settings),
             cancel,
             observer,
             statistics: Statistics::default(),
-            camera_rays: None,
+            camera_rays: Some(CameraRays::new(&world.camera, I::Propagation::medium_of_eye(&state), carried, jitter)),
+            state,
             packet: Box::default(),
-            media: Media::new(world),
-            ways: Ways::default(),
             hits: Hits::default(),
+            asks: Vec::new(),
             shadow: ShadowRays::default(),
-            refracted: RayQueue::default(),
-            bands: if world.spectra.is_empty() {
-                vec![]
-            } else {
-                world.bands.iter().map(|_| RayQueue::default()).collect()
-            },
+            children: Children::new(if world.spectra.is_empty() { 0 } else { world.bands.len() }),
             waiting: Vec::new(),
             spare: Vec::new(),
-            tile: Crop { x: 0, y: 0, width: 1, height: 1 },
+            tile: Tile::pixel(0, 0),
             radiance: Vec::new(),
             rays_of: Vec::new(),
             lost: Vec::new(),
-            sum: Vec::new(),
-            lost_sizes: Vec::new(),
+            traced: TracedTile::default(),
+            spare_sums: Vec::new(),
             lanes: std::marker::PhantomData,
         }
     }
 
-    /// Traces a tile of the picture, and returns the radiance of its pixels, row by row; `None` if it was cancelled on the way.
+    /// Traces some samples of each pixel of a tile; `None` if it was cancelled on the way.
     #[inline(always)]
-    pub fn trace(&mut self, tile: &Crop) -> Option<&[Rgb]> {
-        let mut camera_rays = self.camera_rays.take().unwrap_or_else(|| CameraRays::new(self.world));
-        let (count, spp) = (tile.width as usize * tile.height as usize, self.world.render.spp);
+    pub fn trace(&mut self, tile: &Tile, samples: Range<u32>) -> Option<&mut TracedTile> {
+        let count = tile.len();
         self.tile = *tile;
-        self.sum.clear();
-        self.lost_sizes.clear();
-        self.lost_sizes.resize(count, 0.0);
-        for sample in 0..spp {
-            self.media.forget();
-            camera_rays.aim(tile, sample, &self.media);
-            self.trace_sample(&camera_rays)?;
-            if spp > 1 {
-                self.sum.resize(count, Rgb::black());
-                for (sum, &radiance) in self.sum.iter_mut().zip(&self.radiance) {
-                    *sum = *sum + radiance;
-                }
+        self.spare_sums.extend(self.traced.sums.take().into_iter().map(|(_, sum)| sum));
+        self.traced.lost.clear();
+        self.traced.lost.resize(count, 0);
+        for sample in samples {
+            I::Propagation::start_tile(&mut self.state);
+            if let Some(camera_rays) = &mut self.camera_rays {
+                camera_rays.aim(tile, sample);
             }
+            self.trace_sample()?;
+            let empty = self.spare_sums.pop().unwrap_or_default();
+            let radiance = std::mem::replace(&mut self.radiance, empty);
+            let block = Block { first: sample, log2: 0 };
+            let spare = |sum| self.spare_sums.push(sum);
+            // Each sample comes once.
+            let _ = self.traced.sums.insert(block, radiance, add_to, spare);
         }
-        self.camera_rays = Some(camera_rays);
         self.count_lost_light();
-        if spp == 1 {
-            return Some(&self.radiance);
-        }
-        for sum in &mut self.sum {
-            *sum = mean(*sum, spp);
-        }
-        Some(&self.sum)
+        Some(&mut self.traced)
     }
 
     /// Traces one ray for each pixel, with all that follows from it.
     #[inline(always)]
-    fn trace_sample(&mut self, camera_rays: &CameraRays<'_>) -> Option<()> {
-        let count = camera_rays.len();
+    fn trace_sample(&mut self) -> Option<()> {
+        let count = self.tile.len();
         self.radiance.clear();
         self.radiance.resize(count, Rgb::black());
         self.rays_of.clear();
@@ -154,15 +178,18 @@ impl<'a, L: Lanes, O: Observer> Tracer<'a, L, O> {
         self.lost.clear();
         self.lost.resize(count, Rgb::black());
 
-        let children = self.generation(0, camera_rays);
-        self.enqueue(1, children);
+        if let Some(camera_rays) = self.camera_rays.take() {
+            let children = self.generation(0, &camera_rays);
+            self.camera_rays = Some(camera_rays);
+            self.enqueue(1, children);
+        }
         while let Some((depth, queue)) = self.waiting.pop() {
             if self.cancel.is_some_and(|c| c.load(Ordering::Relaxed)) {
                 self.waiting.clear();
                 return None;
             }
-            for pixel in queue.pixels() {
-                self.rays_of[pixel] += 1;
+            for row in 0..queue.len() {
+                self.rays_of[queue.pixel(row)] += 1;
             }
             let children = self.generation(depth, &queue);
             self.spare.push(queue);
@@ -172,7 +199,7 @@ impl<'a, L: Lanes, O: Observer> Tracer<'a, L, O> {
         Some(())
     }
 
-    fn empty_queue(&mut self) -> RayQueue {
+    fn empty_queue(&mut self) -> RayQueue<I::Propagation> {
         let mut queue = self.spare.pop().unwrap_or_default();
         queue.clear();
         queue
@@ -180,7 +207,7 @@ impl<'a, L: Lanes, O: Observer> Tracer<'a, L, O> {
 
     /// Lets a generation wait, in two parts if it is large. Splitting goes by pixels and keeps the order of rays, so no
     /// pixel sees a difference.
-    fn enqueue(&mut self, depth: u32, queue: RayQueue) {
+    fn enqueue(&mut self, depth: u32, queue: RayQueue<I::Propagation>) {
         if queue.len() <= GENERATION_BUDGET {
             if queue.len() == 0 {
                 self.spare.push(queue);
@@ -189,7 +216,8 @@ impl<'a, L: Lanes, O: Observer> Tracer<'a, L, O> {
             }
             return;
         }
-        let (low, high) = queue.pixels().fold((usize::MAX, 0), |(low, high), p| (low.min(p), high.max(p)));
+        let pixels = (0..queue.len()).map(|row| queue.pixel(row));
+        let (low, high) = pixels.fold((usize::MAX, 0), |(low, high), p| (low.min(p), high.max(p)));
         if low == high {
             self.waiting.push((depth, queue));
             return;
@@ -207,80 +235,71 @@ impl<'a, L: Lanes, O: Observer> Tracer<'a, L, O> {
 
     /// Traces one generation, adds what it contributes, and returns its children.
     #[inline(always)]
-    fn generation(&mut self, depth: u32, rays: &impl Generation) -> RayQueue {
+    fn generation(&mut self, depth: u32, rays: &impl Generation<I::Propagation>) -> RayQueue<I::Propagation> {
         self.statistics.rays.add(rays.counts());
         self.statistics.count_generation(depth, rays.len() as u64);
 
-        let blend = Blend::of(self.world.render.integrator);
-        if blend.is_some() {
-            self.hits.find::<L>(self.world, rays, &mut self.packet);
-        } else {
-            let mut found = Statistics::default();
-            L::call(FindInterfaces {
-                hits: &mut self.hits,
-                rays,
-                media: &mut self.media,
-                ways: &mut self.ways,
-                packet: &mut self.packet,
-                statistics: &mut found,
-            });
-            found.renumber(|pixel| self.number_of(pixel as usize));
-            self.statistics.merge(&found);
-        }
-        let shadow_rays = shading::local_colors::<L>(
-            &mut self.media,
-            &mut self.hits,
-            &mut self.shadow,
-            &mut self.packet,
-            &mut self.observer,
-        );
-        self.statistics.rays.shadow += shadow_rays as u64;
-        let mut children = self.empty_queue();
-        self.refracted.clear();
-        self.bands.iter_mut().for_each(RayQueue::clear);
-        // A loop for each model: neither should have to make room for the other.
-        if let Some(blend) = blend {
-            for start in (0..self.hits.len()).step_by(L::WIDTH) {
-                let batch = self.hits.batch::<L>(self.world, start);
-                let contribution = lecture::contribution(blend, &batch);
-                let (sends_mirror, mirror) = lecture::mirror_ray(blend, &batch);
-                let (sends_exit, exit) = lecture::exit_ray(blend, &batch);
-                children.push(RayKind::Mirror, sends_mirror, &mirror);
-                self.refracted.push(RayKind::Refracted, sends_exit, &exit);
-                self.hits.set_contribution(start, contribution);
-            }
-        } else {
-            L::call(Whitted { tracer: self, children: &mut children });
-        }
-        children.append(&self.refracted);
-        for band in &self.bands {
-            children.append(band);
-        }
+        let mut found = Statistics::default();
+        let Self { state, world, hits, packet, .. } = self;
+        I::Propagation::find_hits::<L>(state, world, rays, hits, packet, &mut found);
+        found.renumber(|pixel| self.number_of(pixel as usize));
+        self.statistics.merge(&found);
+        self.ask_for_light();
+        let scenery = Scenery {
+            world: self.world,
+            shadows: self.settings.shadows,
+            state: &mut self.state,
+            packet: &mut *self.packet,
+        };
+        self.statistics.rays.shadow += L::call(LocalColors {
+            scenery,
+            hits: &mut self.hits,
+            shadow: &mut self.shadow,
+            observer: &mut self.observer,
+            asks: &self.asks,
+        }) as u64;
+        L::call(Scatter::<I> {
+            integrator: self.integrator,
+            world: self.world,
+            state: &self.state,
+            hits: &mut self.hits,
+            children: &mut self.children,
+        });
+        let empty = self.empty_queue();
+        let mut children = self.children.take(empty);
         for row in 0..self.hits.len() {
             let pixel = &mut self.radiance[self.hits.pixel(row)];
             *pixel = *pixel + self.hits.contribution(row);
         }
-        self.observer.generation(rays, &self.hits, &self.media);
+        self.observer.generation::<I>(self.world, rays, &self.hits, &self.state);
         self.limit(depth, &mut children);
         children
     }
 
+    /// Finds out which hits ask for lights.
+    #[inline(always)]
+    fn ask_for_light(&mut self) {
+        self.asks.clear();
+        self.asks.resize(self.hits.len().div_ceil(64), 0);
+        for start in (0..self.hits.len()).step_by(L::WIDTH) {
+            let batch = self.hits.batch::<L>(self.world, start);
+            self.asks[start / 64] |= u64::from(I::asks_for_light(&batch).bits()) << (start % 64);
+        }
+    }
+
     /// Ends what is beyond the depth limit or the limit of rays per pixel, or carries too little, and counts it as lost.
-    fn limit(&mut self, depth: u32, children: &mut RayQueue) {
-        let render = &self.world.render;
-        let too_deep = depth >= render.max_depth;
-        let least = if render.integrator == Integrator::Whitted { render.min_throughput } else { 0.0 };
+    fn limit(&mut self, depth: u32, children: &mut RayQueue<I::Propagation>) {
+        let too_deep = depth >= self.settings.max_depth;
         let most = self.rays_of.iter().copied().max().unwrap_or(0) as usize;
-        if !too_deep && least == 0.0 && most + children.len() <= RAYS_PER_PIXEL as usize {
+        if !too_deep && !self.integrator.ends_early() && most + children.len() <= RAYS_PER_PIXEL as usize {
             return;
         }
         let mut kept = self.empty_queue();
         let mut planned = if too_deep { Vec::new() } else { self.rays_of.clone() };
         for row in 0..children.len() {
             let pixel = children.pixel(row);
-            let load = children.loads::<f64>(row);
-            let throughput = load.weight.throughput();
-            let too_little = least > 0.0 && self.part_carried(throughput, index(load.band) as u32) < least;
+            let carried = children.carried::<f64, I::Carried>(row);
+            let too_little = self.integrator.carries_too_little(self.world, &carried, &children.travel(row));
             let too_many = planned.get(pixel).is_some_and(|&rays| rays >= RAYS_PER_PIXEL);
             if too_deep || too_little || too_many {
                 let why = match (too_deep, too_little) {
@@ -288,9 +307,10 @@ impl<'a, L: Lanes, O: Observer> Tracer<'a, L, O> {
                     (false, true) => Ended::Throughput,
                     (false, false) => Ended::Rays,
                 };
-                self.observer.ended(children, row, why, &self.media);
+                self.observer.ended::<I>(self.world, children, row, why, &self.state);
+                let throughput = I::throughput(&carried);
                 self.lost[pixel] = self.lost[pixel] + throughput;
-                self.lost_sizes[pixel] += Rgb::from(throughput.to_array().map(f64::abs)).mean();
+                self.traced.lost[pixel] = self.traced.lost[pixel].saturating_add(lost_units(throughput));
                 self.statistics.lost.rays += 1;
             } else {
                 planned[pixel] += 1;
@@ -301,27 +321,16 @@ impl<'a, L: Lanes, O: Observer> Tracer<'a, L, O> {
         self.spare.push(kept);
     }
 
-    /// What a ray carries of what one of its band of light could, in the channel where that is most. A band is a small share of
-    /// white, of some channels next to none, and of any channel perhaps a negative one.
-    fn part_carried(&self, throughput: Rgb, band: u32) -> f64 {
-        let whole = if band == WHITE { Rgb::gray(1.0) } else { self.world.bands[band as usize].weight };
-        let parts = throughput.to_array().into_iter().zip(whole.to_array());
-        parts.map(|(carried, whole)| if whole == 0.0 { 0.0 } else { (carried / whole).abs() }).fold(0.0, f64::max)
-    }
-
     fn count_lost_light(&mut self) {
-        for pixel in 0..self.lost_sizes.len() {
-            if self.lost_sizes[pixel] > 0.0 {
-                let mean = self.lost_sizes[pixel] / f64::from(self.world.render.spp);
-                self.statistics.lost.add(self.number_of(pixel), mean);
+        for pixel in 0..self.traced.lost.len() {
+            if self.traced.lost[pixel] > 0 {
+                self.statistics.lost.add(self.number_of(pixel), self.traced.lost[pixel]);
             }
         }
     }
 
     /// The number of a pixel of the tile in the whole picture, row by row.
     fn number_of(&self, pixel: usize) -> u64 {
-        let (tile, columns) = (&self.tile, self.tile.width as usize);
-        let (x, y) = (u64::from(tile.x) + (pixel % columns) as u64, u64::from(tile.y) + (pixel / columns) as u64);
-        y * u64::from(self.world.camera.size[0]) + x
+        self.tile.number_in_picture(pixel, self.world.camera.size[0])
     }
 }

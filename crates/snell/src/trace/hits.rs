@@ -1,45 +1,57 @@
 //! The hits of a generation as columns, and a view of several of them at once.
 
+use super::carried::Carried;
 use super::leaving::together_at_most;
-use super::queue::{Generation, Load, Weight};
+use super::propagation::Propagation;
+use super::queue::{Generation, Outgoing, Ray};
 use crate::film::Rgb;
 use crate::geometry::Vec3;
-use crate::geometry::bvh::{Few, Nearest, PACKET, Packet};
-use crate::lanes::{Columns, Lanes, MAX_WIDTH, Mask, index};
-use crate::scene::{Integrator, Material};
-use crate::world::{Side, World};
+use crate::geometry::bvh::Few;
+use crate::lanes::{Columns, Lanes, MAX_WIDTH, Mask, Number, Record, Row, Table, index, table};
+use crate::scene::Material;
+use crate::world::World;
 
-/// Columns of the hits as they are found.
-const RAY: usize = 0;
-const PIXEL: usize = 1;
-const PRIMITIVE: usize = 2;
-const T: usize = 3;
-const POINT: usize = 4;
-const WO: usize = 7;
-const ATTENUATION: usize = 10;
-
-/// Columns of the faces: handles of the solids before and behind each, whether it is met from outside, the band of the ray.
-const BEFORE: usize = 0;
-const AFTER: usize = 1;
-const BAND: usize = 3;
-
-/// In the column of primitives: nothing is there, only the background.
+/// As a primitive: nothing is there, only the background.
 pub(super) const SKY: f64 = -1.0;
 
-/// Columns of what is worked out about them.
-const NORMAL: usize = 0;
-const MATERIAL: usize = 3;
-const LOCAL: usize = 4;
-const CONTRIBUTION: usize = 7;
+table! {
+    /// A hit as it is found.
+    Found,
+    /// The same in columns.
+    FoundColumns {
+        /// Row of its ray in the queue.
+        ray: Number,
+        pixel: Number,
+        primitive: Number,
+        t: Number,
+        point: Vec3,
+        /// Towards where the ray came from.
+        wo: Vec3,
+    }
+}
+
+table! {
+    /// What is looked up about it.
+    Surface,
+    /// The same in columns.
+    SurfaceColumns {
+        /// The shading normal, of unit length, facing the ray.
+        normal: Vec3,
+        material: Number,
+    }
+}
 
 /// The hits of a generation, compacted, in the order of their rays.
-#[derive(Debug, Default)]
-pub(crate) struct Hits {
-    found: Columns<16>,
-    /// With real optics the faces that were met, and their geometric normals; else empty.
-    faces: Columns<4>,
-    surface: Columns<10>,
+#[derive(Debug)]
+pub(crate) struct Hits<P: Propagation> {
+    found: FoundColumns,
+    carried: Carried,
+    faces: P::Face,
+    surface: SurfaceColumns,
+    /// Where surfaces are met from both sides: the normals of the faces themselves; else empty.
     geometric: Columns<3>,
+    local: Columns<3>,
+    contribution: Columns<3>,
     /// By what the colours of the surfaces are multiplied, if there are patterns; else empty.
     tints: Columns<3>,
     /// How much of the surfaces is there, if there are patterns with holes; else empty.
@@ -48,7 +60,24 @@ pub(crate) struct Hits {
     seen: Few,
 }
 
-impl Hits {
+impl<P: Propagation> Default for Hits<P> {
+    fn default() -> Self {
+        Self {
+            found: FoundColumns::default(),
+            carried: Carried::default(),
+            faces: P::Face::default(),
+            surface: SurfaceColumns::default(),
+            geometric: Columns::default(),
+            local: Columns::default(),
+            contribution: Columns::default(),
+            tints: Columns::default(),
+            coverage: Columns::default(),
+            seen: Few::default(),
+        }
+    }
+}
+
+impl<P: Propagation> Hits<P> {
     #[inline(always)]
     pub fn len(&self) -> usize {
         self.found.len()
@@ -57,43 +86,23 @@ impl Hits {
     #[inline(always)]
     pub fn clear(&mut self) {
         self.found.clear();
+        self.carried.clear();
         self.faces.clear();
     }
 
-    /// Finds the closest hits of all rays, and what surface is there.
+    /// Those of a few spheres that rays may meet, in memory that is to be given back.
     #[inline(always)]
-    pub fn find<L: Lanes>(&mut self, world: &World, rays: &impl Generation, packet: &mut Packet) {
-        self.found.clear();
-        if let Some(spheres) = world.tree.few() {
-            let mut seen = std::mem::take(&mut self.seen);
-            seen.clear();
-            seen.extend(spheres.iter().filter(|(_, sphere)| rays.may_meet(sphere)));
-            let all = if seen.is_empty() { 0 } else { rays.len() };
-            for start in (0..all).step_by(L::WIDTH) {
-                let ((origin, dir), load) = (rays.ways::<L>(start), rays.loads::<L>(start));
-                let active = L::Mask::first(rays.len() - start);
-                let none = Nearest::none(active, load.t_min, L::splat(f64::INFINITY), load.source);
-                let Nearest { hit, t, primitive, .. } = none.among(false, &seen, origin, dir);
-                if hit.any() {
-                    self.push(hit, start, (origin, dir), t, primitive, &load);
-                }
-            }
-            self.seen = seen;
-        } else {
-            for first in (0..rays.len()).step_by(PACKET) {
-                let all = rays.fill::<L>(packet, first, world.tree.has_triangles());
-                let hit = world.tree.intersect::<L, false>(packet, all);
-                for start in (0..PACKET).step_by(L::WIDTH) {
-                    let mask = L::Mask::from_bits((hit >> start) as u32);
-                    if mask.any() {
-                        let (t, primitive) = (L::load(&packet.t[start..]), L::load(&packet.primitive[start..]));
-                        let (way, load) = (packet.ways(start), rays.loads(first + start));
-                        self.push(mask, first + start, way, t, primitive, &load);
-                    }
-                }
-            }
-        }
-        self.look_up_surfaces::<L>(world);
+    pub(super) fn seen_of(&mut self, spheres: &Few, rays: &impl Generation<P>) -> Few {
+        let mut seen = std::mem::take(&mut self.seen);
+        seen.clear();
+        seen.extend(spheres.iter().filter(|(_, sphere)| rays.may_meet(sphere)));
+        seen
+    }
+
+    /// Keeps the memory of what [`seen_of`](Self::seen_of) has returned.
+    #[inline(always)]
+    pub(super) fn give_back(&mut self, seen: Few) {
+        self.seen = seen;
     }
 
     /// Appends the hits of some rays, from a row of their queue on.
@@ -105,51 +114,51 @@ impl Hits {
         (o, d): (Vec3<L>, Vec3<L>),
         t: L,
         primitive: L,
-        load: &Load<L>,
+        rays: &impl Generation<P>,
     ) {
-        let (row, pixel, p, wo) = (L::ramp(row), load.pixel, o + d * t, -d);
-        let Weight { attenuation: a, factor: f } = load.weight;
-        self.found.push(hit, [row, pixel, primitive, t, p.x, p.y, p.z, wo.x, wo.y, wo.z, a.r, a.g, a.b, f.r, f.g, f.b]);
+        let (ray, pixel) = (L::ramp(row), rays.pixels(row));
+        self.found.push(hit, &Found { ray, pixel, primitive, t, point: o + d * t, wo: -d });
+        rays.copy_carried::<L>(hit, row, &mut self.carried);
     }
 
     /// Appends the faces of the hits that were appended last.
     #[inline(always)]
-    pub(super) fn push_faces<L: Lanes>(&mut self, hit: L::Mask, face: &Face<L>, band: L) {
-        self.faces.push(hit, [face.before, face.after, face.outer, band]);
+    pub(super) fn push_faces<L: Lanes>(&mut self, hit: L::Mask, faces: &Row<P::Face, L>) {
+        self.faces.push(hit, faces);
     }
 
+    /// Looks up the surfaces of all hits.
     #[inline(always)]
     pub(super) fn look_up_surfaces<L: Lanes>(&mut self, world: &World) {
-        let real_optics = world.render.integrator == Integrator::Whitted;
+        let two_sided = P::TWO_SIDED;
         self.surface.clear();
         self.geometric.clear();
         self.tints.clear();
         self.coverage.clear();
+        self.local.resize(self.len());
+        self.contribution.resize(self.len());
         for start in (0..self.len()).step_by(L::WIDTH) {
             let (mut primitives, mut materials) = ([0; MAX_WIDTH], [0.0; MAX_WIDTH]);
             for lane in 0..L::WIDTH.min(self.len() - start) {
-                if self.found.at(PRIMITIVE, start + lane) != SKY {
-                    primitives[lane] = self.primitive(start + lane) as usize;
+                let primitive = self.found.primitive::<f64>(start + lane);
+                if primitive != SKY {
+                    primitives[lane] = index(primitive);
                     materials[lane] = f64::from(world.material_of(primitives[lane]));
                 }
             }
-            let [x, y, z] = self.found.group(POINT, start);
-            let [wx, wy, wz] = self.found.group(WO, start);
-            let (point, dir) = (Vec3::new(x, y, z), -Vec3::new(wx, wy, wz));
-            let (mut side, mut there) = (Side::outside(), L::Mask::first(self.len() - start));
-            if real_optics {
-                let [before, after, outer] = self.faces.group::<L, 3>(BEFORE, start);
-                side = Side { within: outer.eq(L::splat(0.0)), either: before.eq(after) };
-                there = there & !self.found.lanes::<L>(PRIMITIVE, start).eq(L::splat(SKY));
+            let (point, wo) = (self.found.point::<L>(start), self.found.wo::<L>(start));
+            let (dir, side) = (-wo, P::side(&self.faces, start));
+            let mut there = L::Mask::first(self.len() - start);
+            if two_sided {
+                there = there & !self.found.primitive::<L>(start).eq(L::splat(SKY));
             }
-            let nothing = Vec3::new(wx, wy, wz);
-            let mut normals = [nothing, nothing];
+            let mut normals = [wo, wo];
             if there.any() {
                 let rim;
                 (normals, rim) = world.facing_normals::<L>(&primitives, point, dir, &side);
                 // Not where the ray has just started: of the place that it leaves it sees the front, too.
-                let rim = rim & there & self.found.lanes::<L>(T, start).gt(L::splat(together_at_most(world)));
-                if real_optics && rim.any() {
+                let rim = rim & there & self.found.t::<L>(start).gt(L::splat(together_at_most(world)));
+                if two_sided && rim.any() {
                     let mut turned = false;
                     for lane in 0..L::WIDTH {
                         if !rim.test(lane) {
@@ -157,7 +166,8 @@ impl Hits {
                         }
                         let front = world.front_of_outline(primitives[lane], point.lane(lane), dir.lane(lane));
                         if let Some(front) = front {
-                            self.found.replace::<f64, 1>(PRIMITIVE, start + lane, [f64::from(front)]);
+                            let found = self.found.rows::<f64>(start + lane);
+                            self.found.replace(start + lane, &Found { primitive: f64::from(front), ..found });
                             primitives[lane] = front as usize;
                             materials[lane] = f64::from(world.material_of(front as usize));
                             turned = true;
@@ -168,12 +178,9 @@ impl Hits {
                     }
                 }
             }
-            let [normal, geometric] = normals;
-            let (normal, active) = (normal.unit(), L::Mask::first(self.len() - start));
-            let zero = L::splat(0.0);
-            let row = [normal.x, normal.y, normal.z, L::load(&materials), zero, zero, zero, zero, zero, zero];
-            self.surface.push(active, row);
-            if real_optics {
+            let ([normal, geometric], active) = (normals, L::Mask::first(self.len() - start));
+            self.surface.push(active, &Surface { normal: normal.unit(), material: L::load(&materials) });
+            if two_sided {
                 self.geometric.push(active, geometric.unit().into());
             }
             if !world.patterns.is_empty() {
@@ -197,65 +204,51 @@ impl Hits {
 
     /// Row of the ray of a hit in its queue.
     pub fn ray(&self, row: usize) -> usize {
-        index(self.found.at(RAY, row))
+        index(self.found.ray(row))
     }
 
     #[inline(always)]
     pub fn pixel(&self, row: usize) -> usize {
-        index(self.found.at(PIXEL, row))
+        index(self.found.pixel(row))
     }
 
     #[inline(always)]
     pub fn primitive(&self, row: usize) -> u32 {
-        index(self.found.at(PRIMITIVE, row)) as u32
+        index(self.found.primitive(row)) as u32
     }
 
     /// Is there nothing but the background?
     pub fn is_sky(&self, row: usize) -> bool {
-        self.found.at(PRIMITIVE, row) == SKY
-    }
-
-    pub fn t(&self, row: usize) -> f64 {
-        self.found.at(T, row)
-    }
-
-    /// Of unit length, facing the ray.
-    pub fn normal(&self, row: usize) -> Vec3 {
-        let at = |i| self.surface.at(NORMAL + i, row);
-        Vec3::new(at(0), at(1), at(2))
+        self.found.primitive::<f64>(row) == SKY
     }
 
     /// What the hit adds to its pixel.
     #[inline(always)]
     pub fn contribution(&self, row: usize) -> Rgb {
-        let [r, g, b] = [0, 1, 2].map(
-            #[inline(always)]
-            |i| self.surface.at(CONTRIBUTION + i, row),
-        );
+        let [r, g, b] = self.contribution.group::<f64, 3>(0, row);
         Rgb::new(r, g, b)
     }
 
     /// Replaces the local colour of a batch.
     #[inline(always)]
     pub fn set_local_color<L: Lanes>(&mut self, start: usize, color: Rgb<L>) {
-        self.surface.replace::<L, 3>(LOCAL, start, color.into());
+        self.local.replace::<L, 3>(0, start, color.into());
     }
 
     /// Says what a batch adds to its pixels.
     #[inline(always)]
     pub fn set_contribution<L: Lanes>(&mut self, start: usize, color: Rgb<L>) {
-        self.surface.replace::<L, 3>(CONTRIBUTION, start, color.into());
+        self.contribution.replace::<L, 3>(0, start, color.into());
     }
 
     /// The hits from one row on.
     #[inline(always)]
-    pub fn batch<'a, L: Lanes>(&'a self, world: &'a World, start: usize) -> Batch<'a, L> {
+    pub fn batch<'a, L: Lanes>(&'a self, world: &'a World, start: usize) -> Batch<'a, L, P> {
         let mut active = L::Mask::first(self.len() - start);
-        if self.faces.len() > 0 {
-            active = active & !self.found.lanes::<L>(PRIMITIVE, start).eq(L::splat(SKY));
+        if P::TWO_SIDED {
+            active = active & !self.found.primitive::<L>(start).eq(L::splat(SKY));
         }
-        let material = self.surface.lanes::<L>(MATERIAL, start);
-        let first = self.surface.at(MATERIAL, start);
+        let (material, first) = (self.surface.material::<L>(start), self.surface.material::<f64>(start));
         let one_material = !(active & !material.eq(L::splat(first))).any();
         Batch { world, hits: self, start, active, one_material }
     }
@@ -263,64 +256,40 @@ impl Hits {
 
 /// The hits from one row on, one in each lane. Lanes behind the last hit are not active and of no meaning.
 #[derive(Clone, Copy)]
-pub(crate) struct Batch<'a, L: Lanes> {
+pub(crate) struct Batch<'a, L: Lanes, P: Propagation> {
     pub world: &'a World,
-    hits: &'a Hits,
+    hits: &'a Hits<P>,
     start: usize,
     pub active: L::Mask,
     /// Neighbouring hits mostly have the same material: then its numbers need not be gathered.
     one_material: bool,
 }
 
-/// On which side of a surface a ray is, and what it is in, in lanes.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Face<L: Lanes> {
-    /// In which solids the ray arrives, and in which it would go on behind the face: handles of `Media`.
-    pub before: L,
-    pub after: L,
-    /// 1 where the ray arrives from outside, else 0.
-    pub outer: L,
-}
-
-/// The coefficients of a surface that decide how light goes on.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Coefficients<L: Lanes> {
-    pub kr: Rgb<L>,
-    pub ko: Rgb<L>,
-}
-
-impl<L: Lanes> Batch<'_, L> {
-    #[inline(always)]
-    fn found(&self, column: usize) -> Vec3<L> {
-        let [x, y, z] = self.hits.found.group(column, self.start);
-        Vec3::new(x, y, z)
-    }
-
+impl<L: Lanes, P: Propagation> Batch<'_, L, P> {
     #[inline(always)]
     pub fn point(&self) -> Vec3<L> {
-        self.found(POINT)
+        self.hits.found.point(self.start)
     }
 
     /// How far the rays came.
     #[inline(always)]
     pub fn t(&self) -> L {
-        self.hits.found.lanes(T, self.start)
+        self.hits.found.t(self.start)
     }
 
     /// Towards where the ray came from.
     #[inline(always)]
     pub fn wo(&self) -> Vec3<L> {
-        self.found(WO)
+        self.hits.found.wo(self.start)
     }
 
     /// Of unit length, facing the ray.
     #[inline(always)]
     pub fn normal(&self) -> Vec3<L> {
-        let [x, y, z] = self.hits.surface.group(NORMAL, self.start);
-        Vec3::new(x, y, z)
+        self.hits.surface.normal(self.start)
     }
 
-    /// The same of the face itself, where the surface is smoothed.
+    /// The same of the face itself, where the surface is smoothed. Only if surfaces are met from both sides.
     #[inline(always)]
     pub fn geometric_normal(&self) -> Vec3<L> {
         let [x, y, z] = self.hits.geometric.group(0, self.start);
@@ -333,54 +302,41 @@ impl<L: Lanes> Batch<'_, L> {
         self.primitive().eq(L::splat(SKY))
     }
 
+    /// What the propagation knows of the hits.
     #[inline(always)]
-    pub fn face(&self) -> Face<L> {
-        let [before, after, outer] = self.hits.faces.group(BEFORE, self.start);
-        Face { before, after, outer }
+    pub fn face(&self) -> Row<P::Face, L> {
+        self.hits.faces.rows(self.start)
     }
 
-    /// The handles of the solids before and behind the face of one hit, and the band of the ray.
-    pub fn media_of(&self, lane: usize) -> [u32; 3] {
-        let row = (self.start + lane).min(self.hits.len() - 1);
-        [BEFORE, AFTER, BAND].map(|column| index(self.hits.faces.at(column, row)) as u32)
-    }
-
+    /// The same of one of them.
     #[inline(always)]
-    pub fn band(&self) -> L {
-        self.hits.faces.lanes(BAND, self.start)
+    pub fn face_of(&self, lane: usize) -> Row<P::Face, f64> {
+        self.hits.faces.rows((self.start + lane).min(self.hits.len() - 1))
     }
 
     #[inline(always)]
     pub fn local_color(&self) -> Rgb<L> {
-        let [r, g, b] = self.hits.surface.group(LOCAL, self.start);
+        let [r, g, b] = self.hits.local.group(0, self.start);
         Rgb::new(r, g, b)
     }
 
     #[inline(always)]
-    pub fn ray(&self) -> L {
-        self.hits.found.lanes(RAY, self.start)
-    }
-
-    #[inline(always)]
-    pub fn pixel(&self) -> L {
-        self.hits.found.lanes(PIXEL, self.start)
-    }
-
-    #[inline(always)]
     pub fn primitive(&self) -> L {
-        self.hits.found.lanes(PRIMITIVE, self.start)
+        self.hits.found.primitive(self.start)
     }
 
     /// What the rays that hit here carry.
     #[inline(always)]
-    pub fn weight(&self) -> Weight<L> {
-        let [r, g, b, fr, fg, fb] = self.hits.found.group(ATTENUATION, self.start);
-        Weight { attenuation: Rgb::new(r, g, b), factor: Rgb::new(fr, fg, fb) }
+    pub fn carried<T: Record>(&self) -> Row<T, L> {
+        self.hits.carried.rows::<L, T>(self.start)
     }
 
+    /// A ray that leaves from each hit.
     #[inline(always)]
-    pub fn coefficients(&self) -> Coefficients<L> {
-        Coefficients { kr: self.material_color(|m| m.kr), ko: self.material_color(|m| m.ko) }
+    pub fn leaving(&self, origin: Vec3<L>, dir: Vec3<L>, travel: Row<P::Travel, L>) -> Outgoing<L, P> {
+        let found = &self.hits.found;
+        let (parent, pixel) = (found.ray(self.start), found.pixel(self.start));
+        Outgoing { ray: Ray { origin, dir, source: self.primitive(), parent, pixel }, travel }
     }
 
     #[inline(always)]
@@ -438,13 +394,13 @@ impl<L: Lanes> Batch<'_, L> {
     #[inline(always)]
     pub fn material_number(&self, lane: usize) -> u32 {
         let row = (self.start + lane).min(self.hits.len() - 1);
-        index(self.hits.surface.at(MATERIAL, row)) as u32
+        index(self.hits.surface.material(row)) as u32
     }
 
     #[inline(always)]
     fn material_of(&self, lane: usize) -> &Material {
         let row = (self.start + lane).min(self.hits.len() - 1);
-        &self.world.materials[index(self.hits.surface.at(MATERIAL, row))]
+        &self.world.materials[index(self.hits.surface.material(row))]
     }
 
     #[inline(always)]

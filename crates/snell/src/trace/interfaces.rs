@@ -9,21 +9,185 @@
 //! At the start of a ray ways out count from a little behind it, ways in and opaque surfaces as [`Leaving`] says. A ray that starts
 //! within a solid at an edge may have been rounded to its outside, from where no face leads out: it leaves by the nearest one.
 
-use super::hits::{Face, Hits, SKY};
-use super::leaving::{Leaving, are_in_one_place, together_at_most, until_clear};
-use super::media::{Media, OUTSIDE};
-use super::queue::{Generation, Load};
+use super::hits::{Batch, Hits, SKY};
+use super::leaving::{Leaving, are_in_one_place, back, through, together_at_most, until_clear};
+use super::media::{Media, OUTSIDE, WHITE};
+use super::propagation::Propagation;
+use super::queue::Generation;
 use super::statistics::{Overlap, Statistics};
 use crate::film::Rgb;
 use crate::geometry::Vec3;
 use crate::geometry::bvh::{PACKET, Packet};
-use crate::lanes::{Kernel, Lanes, Mask, index};
+use crate::lanes::{Kernel, Lanes, Mask, Number, index, table};
 use crate::optics::absorption::transmittance_rgb;
-use crate::world::{NO_SOLID, World};
+use crate::world::{NO_SOLID, Side, World};
+
+table! {
+    /// What a ray among media has, besides a line and the primitive that it leaves.
+    Travel,
+    /// The same in columns.
+    TravelColumns {
+        /// Up to here it is not clear of the place that it leaves, and what it meets is looked at closely.
+        clear_at: Number,
+        /// In which solids it is: a handle of [`Media`].
+        medium: Number,
+        /// Its band of light; [`WHITE`] for all of it.
+        band: Number,
+        /// From where it starts to the place from which it is asked what it meets ([`back`], [`through`]); zero where that is the same.
+        back: Vec3,
+    }
+}
+
+table! {
+    /// On which side of a surface a ray is, and what it is in.
+    Face,
+    /// The same in columns.
+    FaceColumns {
+        /// In which solids the ray arrives: a handle of [`Media`].
+        before: Number,
+        /// In which it would go on behind the face.
+        after: Number,
+        /// 1 where it arrives from outside, else 0.
+        outer: Number,
+        /// The band of the ray.
+        band: Number,
+        /// What the media on its way have transmitted.
+        transmittance: Rgb,
+    }
+}
+
+/// Real optics: rays are in media, and meet the interfaces between them.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Interfaces;
+
+/// What a worker remembers of them.
+#[derive(Debug)]
+pub(crate) struct InterfaceState<'a> {
+    pub media: Media<'a>,
+    paths: Box<Paths>,
+}
+
+impl Propagation for Interfaces {
+    type Travel = TravelColumns;
+    type Face = FaceColumns;
+    type State<'a> = InterfaceState<'a>;
+
+    const T_MIN: f64 = 0.0;
+    const TWO_SIDED: bool = true;
+
+    fn new(world: &World) -> InterfaceState<'_> {
+        InterfaceState { media: Media::new(world), paths: Box::default() }
+    }
+
+    fn start_tile(state: &mut InterfaceState<'_>) {
+        state.media.forget();
+    }
+
+    fn medium_of_eye(state: &InterfaceState<'_>) -> u32 {
+        state.media.eye()
+    }
+
+    #[inline(always)]
+    fn from_camera<L: Lanes>(medium: u32) -> Travel<L> {
+        let (medium, band) = (L::splat(f64::from(medium)), L::splat(f64::from(WHITE)));
+        Travel { clear_at: L::splat(0.0), medium, band, back: Vec3::default().splat() }
+    }
+
+    #[inline(always)]
+    fn find_hits<L: Lanes>(
+        state: &mut InterfaceState<'_>,
+        _world: &World,
+        rays: &impl Generation<Self>,
+        hits: &mut Hits<Self>,
+        packet: &mut Packet,
+        statistics: &mut Statistics,
+    ) {
+        let InterfaceState { media, paths } = state;
+        // A function of its own: the rest of a generation should not have to make room for it.
+        L::call(FindInterfaces { hits, rays, media, paths, packet, statistics });
+    }
+
+    #[inline(always)]
+    fn side<L: Lanes>(faces: &FaceColumns, start: usize) -> Side<L> {
+        let (before, after) = (faces.before::<L>(start), faces.after(start));
+        Side { within: faces.outer::<L>(start).eq(L::splat(0.0)), either: before.eq(after) }
+    }
+
+    #[inline(always)]
+    fn shadow_start<L: Lanes>(hits: &Batch<'_, L, Self>, wi: Vec3<L>) -> (Vec3<L>, L) {
+        let start = hits.point() + hits.wo() * back(hits.world, hits.t());
+        (start, until_clear(hits.world, hits.geometric_normal().dot(wi)))
+    }
+
+    fn light_along(state: &mut InterfaceState<'_>, ray: &Leaving, distance: f64, medium: u32) -> Rgb {
+        state.media.light_along(ray, distance, medium)
+    }
+
+    #[inline(always)]
+    fn medium_before<L: Lanes>(hits: &Batch<'_, L, Self>) -> L {
+        hits.face().before
+    }
+
+    fn medium_of_ray(
+        state: &InterfaceState<'_>,
+        _world: &World,
+        travel: &Travel<f64>,
+    ) -> (f64, Option<u32>, Option<u32>) {
+        let (set, band) = (index(travel.medium) as u32, index(travel.band) as u32);
+        let solid = state.media.top(set);
+        (state.media.eta(set, band), (solid != NO_SOLID).then_some(solid), (band != WHITE).then_some(band))
+    }
+
+    fn sides_of_hit(state: &InterfaceState<'_>, hit: &Batch<'_, f64, Self>) -> ([f64; 2], bool) {
+        let [before, after, band] = media_of(hit, 0);
+        ([before, after].map(|set| state.media.eta(set, band)), hit.face().outer > 0.0)
+    }
+
+    fn is_in_the_way(world: &World, ray: &Leaving, (t, primitive): (f64, u32), tinted: bool) -> bool {
+        let is_hole = tinted && world.is_hole(primitive as usize, ray.origin + ray.dir * t);
+        ray.meets(world, primitive, t) && !is_hole
+    }
+}
+
+/// The handles of the solids before and behind the face of one hit, and the band of the ray.
+#[inline(always)]
+pub(crate) fn media_of<L: Lanes>(hits: &Batch<'_, L, Interfaces>, lane: usize) -> [u32; 3] {
+    let Face { before, after, band, .. } = hits.face_of(lane);
+    [before, after, band].map(|number| index(number) as u32)
+}
+
+/// What a ray has that leaves hits in this direction, into this medium.
+#[inline(always)]
+pub(crate) fn onward<L: Lanes>(hits: &Batch<'_, L, Interfaces>, dir: Vec3<L>, medium: L, band: L) -> Travel<L> {
+    let clear_at = until_clear(hits.world, hits.geometric_normal().dot(dir));
+    Travel { clear_at, medium, band, back: Vec3::default().splat() }
+}
+
+/// The same of a mirrored ray: what it meets is asked from a place surely in front of the surface.
+#[inline(always)]
+pub(crate) fn mirrored<L: Lanes>(hits: &Batch<'_, L, Interfaces>, dir: Vec3<L>, medium: L, band: L) -> Travel<L> {
+    Travel { back: hits.wo() * back(hits.world, hits.t()), ..onward(hits, dir, medium, band) }
+}
+
+/// The same of a ray that goes on through faces that are only partly there, where the mask says so.
+#[inline(always)]
+pub(crate) fn through_holes<L: Lanes>(
+    hits: &Batch<'_, L, Interfaces>,
+    cut_out: L::Mask,
+    dir: Vec3<L>,
+    ray: Travel<L>,
+) -> Travel<L> {
+    let [back, clear] = through(hits.world, hits.geometric_normal().dot(dir), hits.t());
+    Travel {
+        back: Vec3::select(cut_out, hits.wo() * back, ray.back),
+        clear_at: L::select(cut_out, clear, ray.clear_at),
+        ..ray
+    }
+}
 
 /// A packet's rays on their way to an interface.
 #[derive(Clone, Debug)]
-pub(crate) struct Ways {
+struct Paths {
     /// In which solids each is, and would be behind the face that it has met.
     before: [f64; PACKET],
     after: [f64; PACKET],
@@ -43,7 +207,7 @@ pub(crate) struct Ways {
     crossings: Vec<(f64, u32)>,
 }
 
-impl Default for Ways {
+impl Default for Paths {
     fn default() -> Self {
         let zero = [0.0; PACKET];
         Self {
@@ -85,21 +249,21 @@ struct Place {
     enters: bool,
 }
 
-/// Finds the next interface of all rays, or the background. A function of its own: the lecture's models have no use for it.
-pub(crate) struct FindInterfaces<'b, 'a, G> {
-    pub hits: &'b mut Hits,
-    pub rays: &'b G,
-    pub media: &'b mut Media<'a>,
-    pub ways: &'b mut Ways,
-    pub packet: &'b mut Packet,
-    pub statistics: &'b mut Statistics,
+/// Finds the next interface of all rays, or the background.
+struct FindInterfaces<'b, 'a, G> {
+    hits: &'b mut Hits<Interfaces>,
+    rays: &'b G,
+    media: &'b mut Media<'a>,
+    paths: &'b mut Paths,
+    packet: &'b mut Packet,
+    statistics: &'b mut Statistics,
 }
 
-impl<G: Generation> Kernel for FindInterfaces<'_, '_, G> {
+impl<G: Generation<Interfaces>> Kernel for FindInterfaces<'_, '_, G> {
     type Output = ();
     #[inline(always)]
     fn run<L: Lanes>(self) {
-        let Self { hits, rays, media, ways, packet, statistics } = self;
+        let Self { hits, rays, media, paths, packet, statistics } = self;
         let world = media.world();
         hits.clear();
         packet.two_sided = true;
@@ -107,16 +271,17 @@ impl<G: Generation> Kernel for FindInterfaces<'_, '_, G> {
             let all = rays.fill::<L>(packet, first, world.tree.has_triangles());
             let mut moved = 0;
             for start in (0..PACKET).step_by(L::WIDTH).filter(|&start| all >> start != 0) {
-                moved |= ways.start(world, packet, start, &rays.loads::<L>(first + start)) << start;
+                let (source, travel) = (rays.sources::<L>(first + start), rays.travel(first + start));
+                moved |= paths.start(world, packet, start, source, &travel) << start;
             }
             let (mut open, mut met) = (all, 0);
             while open != 0 {
                 let hit = world.tree.intersect::<L, false>(packet, open);
-                let lost = ones(open & !hit).filter(|&ray| ways.leave_where_it_starts(media, packet, ray));
+                let lost = ones(open & !hit).filter(|&ray| paths.leave_where_it_starts(media, packet, ray));
                 let hit = hit | lost.fold(0, |lost, ray| lost | 1 << ray);
                 open = 0;
                 for ray in ones(hit) {
-                    match ways.meet(media, packet, ray, rays.pixel(first + ray), statistics) {
+                    match paths.meet(media, packet, ray, index(rays.pixels(first + ray)), statistics) {
                         Met::Face => met |= 1 << ray,
                         Met::Nothing(up_to) => {
                             open |= 1 << ray;
@@ -127,19 +292,19 @@ impl<G: Generation> Kernel for FindInterfaces<'_, '_, G> {
             }
             for ray in ones(all & !met) {
                 // Every body ends somewhere: a ray that leaves the scene in one has missed its way out.
-                let before = index(ways.before[ray]) as u32;
+                let before = index(paths.before[ray]) as u32;
                 if before != OUTSIDE {
                     let (origin, dir) = packet.ways::<f64>(ray);
-                    let ahead = ways.clear[ray].max(packet.t_min[ray]).min(world.reach) + together_at_most(world);
+                    let ahead = paths.clear[ray].max(packet.t_min[ray]).min(world.reach) + together_at_most(world);
                     if media.is_lost(before, origin + dir * ahead) {
-                        statistics.stray.add(rays.pixel(first + ray));
+                        statistics.stray.add(index(rays.pixels(first + ray)));
                     }
                 }
                 (packet.t[ray], packet.primitive[ray]) = (f64::INFINITY, SKY);
             }
             for ray in ones(met & moved) {
                 // From the place itself; but in a corner, where that may be behind what is met, all is as it was asked for.
-                let (origin, dir) = rays.ways::<f64>(first + ray);
+                let (origin, dir) = rays.lines::<f64>(first + ray);
                 let t = world.meets_at(index(packet.primitive[ray]), origin, dir, packet.t[ray]);
                 if let Some(t) = t.filter(|&t| t > 8.0 * world.clearance) {
                     packet.start_at(ray, origin);
@@ -148,18 +313,17 @@ impl<G: Generation> Kernel for FindInterfaces<'_, '_, G> {
             }
             let seen = if world.background.is_black() { met } else { all };
             for ray in ones(seen) {
-                ways.absorb(media, ray, packet.t[ray]);
+                paths.absorb(media, ray, packet.t[ray]);
             }
             for start in (0..PACKET).step_by(L::WIDTH) {
                 let mask = L::Mask::from_bits((seen >> start) as u32);
                 if mask.any() {
                     let (t, primitive) = (L::load(&packet.t[start..]), L::load(&packet.primitive[start..]));
-                    let mut load = rays.loads::<L>(first + start);
-                    load.weight.attenuation = load.weight.attenuation * ways.kept::<L>(start);
+                    let row = first + start;
                     // The background is nowhere.
                     let at = L::select(primitive.eq(L::splat(SKY)), L::splat(0.0), t);
-                    hits.push(mask, first + start, packet.ways(start), at, primitive, &load);
-                    hits.push_faces(mask, &ways.face(start), load.band);
+                    hits.push(mask, row, packet.ways(start), at, primitive, rays);
+                    hits.push_faces(mask, &paths.face::<L>(start));
                 }
             }
         }
@@ -176,7 +340,7 @@ fn ones(mut bits: u64) -> impl Iterator<Item = usize> {
     })
 }
 
-impl Ways {
+impl Paths {
     /// What has been let through, in lanes.
     #[inline(always)]
     fn kept<L: Lanes>(&self, start: usize) -> Rgb<L> {
@@ -191,21 +355,30 @@ impl Ways {
             before: L::load(&self.before[start..]),
             after: L::load(&self.after[start..]),
             outer: L::load(&self.outer[start..]),
+            band: L::load(&self.band[start..]),
+            transmittance: self.kept(start),
         }
     }
 
     /// Says which rays of a group have been moved in front of the place that they leave.
     #[inline(always)]
-    fn start<L: Lanes>(&mut self, world: &World, packet: &mut Packet, start: usize, load: &Load<L>) -> u64 {
+    fn start<L: Lanes>(
+        &mut self,
+        world: &World,
+        packet: &mut Packet,
+        start: usize,
+        source: L,
+        travel: &Travel<L>,
+    ) -> u64 {
         let (zero, one) = (L::splat(0.0), L::splat(1.0));
-        let Load { t_min, source, medium, band, back, .. } = *load;
+        let Travel { clear_at, medium, band, back } = *travel;
         let back_columns: [L; 3] = back.into();
         for (value, column) in [
             (medium, &mut self.before),
             (medium, &mut self.after),
             (one, &mut self.outer),
             (band, &mut self.band),
-            (t_min, &mut self.clear),
+            (clear_at, &mut self.clear),
             (zero, &mut self.since),
             (zero, &mut self.changed),
         ] {

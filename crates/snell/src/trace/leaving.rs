@@ -21,6 +21,7 @@
 
 use crate::geometry::Vec3;
 use crate::lanes::{Lanes, index};
+use crate::scene::Shadows;
 use crate::world::World;
 
 /// How far a ray goes that leaves a face, at an angle of this cosine to its normal, until it is clear of its plane.
@@ -69,7 +70,7 @@ pub(super) fn are_in_one_place(world: &World, (origin, dir): (Vec3, Vec3), a: (f
 
 /// A ray that leaves a surface, or the eye.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Leaving {
+pub(crate) struct Leaving {
     pub origin: Vec3,
     /// Of unit length.
     pub dir: Vec3,
@@ -109,10 +110,12 @@ impl Leaving {
     }
 
     /// Does anything up to `distance` through which no light goes really stand in its way, where it is not yet clear?
-    pub fn is_blocked(&self, world: &World, distance: f64) -> bool {
+    pub fn is_blocked(&self, world: &World, distance: f64, shadows: Shadows) -> bool {
         let (mut crossings, end) = (Vec::new(), self.clear.min(distance));
         world.tree.crossings(self.origin, self.dir, [-world.behind, end], &mut crossings);
-        crossings.into_iter().any(|(t, primitive)| world.blocks_light(primitive) && self.meets(world, primitive, t))
+        crossings
+            .into_iter()
+            .any(|(t, primitive)| world.blocks_light(primitive, shadows) && self.meets(world, primitive, t))
     }
 
     fn normal(&self, world: &World) -> Vec3 {

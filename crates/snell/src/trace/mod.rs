@@ -13,26 +13,37 @@
 //! the thread can change a bit of it.
 
 mod camera;
+mod carried;
+mod first_surface;
 mod generation;
 mod hits;
-mod interfaces;
+pub(crate) mod interfaces;
 mod leaving;
-mod lecture;
-mod media;
+pub(crate) mod media;
 mod observer;
-mod pane;
+mod pairwise;
+pub(crate) mod pane;
+mod propagation;
 mod queue;
 mod recorder;
 mod sampler;
+mod settings;
 mod shading;
 mod statistics;
+mod tile;
 mod tree;
 mod warnings;
-mod whitted;
 
-pub(crate) use generation::Tracer;
+pub(crate) use first_surface::FirstSurface;
+pub(crate) use generation::{TracedTile, Tracer, add_to};
+pub(crate) use hits::Batch;
+pub use pairwise::{Block, PairwiseSum, Twice};
+pub(crate) use propagation::Propagation;
 pub use queue::RayKind;
+pub(crate) use queue::{Children, Outgoing};
 pub(crate) use recorder::Recorder;
+pub use settings::Settings;
 pub use statistics::{LostLight, Overlap, Overlaps, RayCounts, Statistics, StrayExits};
+pub use tile::Tile;
 pub(crate) use tree::mean;
 pub use tree::{Ended, Hit, Lit, Node, PixelTrace, RayTree};

@@ -1,22 +1,48 @@
 //! Who looks on while rays are traced: nobody for plain rendering, the recorder for explanations.
 
 use super::hits::Hits;
-use super::media::Media;
+use super::propagation::Propagation;
 use super::queue::{Generation, RayQueue};
 use super::shading::ShadowRays;
 use super::tree::Ended;
 use crate::film::Rgb;
+use crate::integrate::Integrator;
+use crate::scene::Shadows;
 use crate::world::{LightSource, World};
+
+/// What the propagation of a model of light remembers.
+pub(crate) type StateOf<'a, I> = <<I as Integrator>::Propagation as Propagation>::State<'a>;
 
 /// Sees every generation: first what light does at its hits, then its rays, hits and contributions, then what is not followed.
 pub(crate) trait Observer {
     /// The local colours are those of the ambient light.
-    fn ambient(&mut self, hits: &Hits, world: &World);
-    /// What one light adds to them.
-    fn light(&mut self, world: &World, light: &LightSource, hits: &Hits, shadow: &ShadowRays);
-    fn generation(&mut self, rays: &impl Generation, hits: &Hits, media: &Media<'_>);
+    fn ambient<P: Propagation>(&mut self, hits: &Hits<P>, world: &World);
+    /// What one light adds to them. Only hits that have a bit in `asks` ask for it.
+    fn light<P: Propagation>(
+        &mut self,
+        world: &World,
+        shadows: Shadows,
+        light: &LightSource,
+        hits: &Hits<P>,
+        asks: &[u64],
+        shadow: &ShadowRays,
+    );
+    fn generation<I: Integrator>(
+        &mut self,
+        world: &World,
+        rays: &impl Generation<I::Propagation>,
+        hits: &Hits<I::Propagation>,
+        state: &StateOf<'_, I>,
+    );
     /// A child of the last generation is not followed.
-    fn ended(&mut self, children: &RayQueue, row: usize, why: Ended, media: &Media<'_>);
+    fn ended<I: Integrator>(
+        &mut self,
+        world: &World,
+        children: &RayQueue<I::Propagation>,
+        row: usize,
+        why: Ended,
+        state: &StateOf<'_, I>,
+    );
     /// A sample of each pixel is done; what each of them lost.
     fn sample(&mut self, lost: &[Rgb]);
 }
@@ -24,13 +50,37 @@ pub(crate) trait Observer {
 /// Looks at nothing: plain rendering.
 impl Observer for () {
     #[inline(always)]
-    fn ambient(&mut self, _hits: &Hits, _world: &World) {}
+    fn ambient<P: Propagation>(&mut self, _: &Hits<P>, _: &World) {}
     #[inline(always)]
-    fn light(&mut self, _world: &World, _light: &LightSource, _hits: &Hits, _shadow: &ShadowRays) {}
+    fn light<P: Propagation>(
+        &mut self,
+        _: &World,
+        _: Shadows,
+        _: &LightSource,
+        _: &Hits<P>,
+        _: &[u64],
+        _: &ShadowRays,
+    ) {
+    }
     #[inline(always)]
-    fn generation(&mut self, _rays: &impl Generation, _hits: &Hits, _media: &Media<'_>) {}
+    fn generation<I: Integrator>(
+        &mut self,
+        _: &World,
+        _: &impl Generation<I::Propagation>,
+        _: &Hits<I::Propagation>,
+        _: &StateOf<'_, I>,
+    ) {
+    }
     #[inline(always)]
-    fn ended(&mut self, _children: &RayQueue, _row: usize, _why: Ended, _media: &Media<'_>) {}
+    fn ended<I: Integrator>(
+        &mut self,
+        _: &World,
+        _: &RayQueue<I::Propagation>,
+        _: usize,
+        _: Ended,
+        _: &StateOf<'_, I>,
+    ) {
+    }
     #[inline(always)]
-    fn sample(&mut self, _lost: &[Rgb]) {}
+    fn sample(&mut self, _: &[Rgb]) {}
 }

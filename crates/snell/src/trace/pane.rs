@@ -9,7 +9,7 @@ use crate::optics::thin::{origin_behind, slab, slanted_pass};
 
 /// What a pane is.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Pane<L: Lanes> {
+pub(crate) struct Pane<L: Lanes> {
     /// In scene units.
     pub thickness: L,
     /// Index relative to what is on both sides.
@@ -20,7 +20,7 @@ pub(super) struct Pane<L: Lanes> {
 
 /// What a pane does with light that meets it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Passage<L: Lanes> {
+pub(crate) struct Passage<L: Lanes> {
     pub reflectance: Rgb<L>,
     pub transmittance: Rgb<L>,
 }

@@ -1,9 +1,10 @@
 //! The rays of a generation: those of a queue, as columns.
 
-use crate::film::Rgb;
+use super::Propagation;
+use super::carried::Carried;
 use crate::geometry::bvh::{PACKET, Packet};
 use crate::geometry::{Sphere, Vec3};
-use crate::lanes::{Columns, Lanes, Mask, index};
+use crate::lanes::{Lanes, Mask, Number, Record, Row, Table, index, table};
 
 /// Where a ray comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,42 +17,49 @@ pub enum RayKind {
     Refracted,
 }
 
-/// What a ray carries: `a` and `f`.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Weight<L: Lanes> {
-    /// What the surfaces passed so far leave of the light: the lecture's `a`.
-    pub attenuation: Rgb<L>,
-    /// The product of the parents' factors, which the lecture applies besides `a`.
-    pub factor: Rgb<L>,
-}
-
-impl<L: Lanes> Weight<L> {
-    /// What can be added to the pixel for each unit of radiance: `factor·attenuation`.
-    #[inline(always)]
-    pub fn throughput(&self) -> Rgb<L> {
-        self.factor * self.attenuation
+table! {
+    /// What there is of every ray.
+    Ray,
+    /// The same in columns.
+    Rays {
+        origin: Vec3,
+        /// Of unit length.
+        dir: Vec3,
+        /// The primitive that the ray leaves, −1 for none.
+        source: Number,
+        /// Row of the parent ray in the generation before.
+        parent: Number,
+        /// Number of the pixel within the tile.
+        pixel: Number,
     }
 }
 
-/// Rays in lanes.
+/// Rays that leave a surface, in lanes.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Rays<L: Lanes> {
-    pub origin: Vec3<L>,
-    pub dir: Vec3<L>,
-    pub load: Load<L>,
+pub(crate) struct Outgoing<L: Lanes, P: Propagation> {
+    pub ray: Ray<L>,
+    pub travel: Row<P::Travel, L>,
 }
 
 /// The rays of a generation, in a fixed order.
-pub(crate) trait Generation {
+pub(crate) trait Generation<P: Propagation> {
     fn len(&self) -> usize;
     /// How many camera, mirror and refracted rays; they stand in this order.
     fn counts(&self) -> [usize; 3];
     /// Origins and directions from a row on, one in each lane; behind the last row they are of no meaning.
-    fn ways<L: Lanes>(&self, start: usize) -> (Vec3<L>, Vec3<L>);
-    /// What these rays carry and where they come from.
-    fn loads<L: Lanes>(&self, start: usize) -> Load<L>;
-    /// The pixel of a ray, within the tile.
-    fn pixel(&self, row: usize) -> usize;
+    fn lines<L: Lanes>(&self, start: usize) -> (Vec3<L>, Vec3<L>);
+    /// The primitives that these rays leave.
+    fn sources<L: Lanes>(&self, start: usize) -> L;
+    /// Rows of their parents in the generation before.
+    fn parents<L: Lanes>(&self, start: usize) -> L;
+    /// Their pixels, within the tile.
+    fn pixels<L: Lanes>(&self, start: usize) -> L;
+    /// What they have for their propagation.
+    fn travel<L: Lanes>(&self, start: usize) -> Row<P::Travel, L>;
+    /// What they carry.
+    fn carried<L: Lanes, T: Record>(&self, start: usize) -> Row<T, L>;
+    /// Appends what those carry, from a row on, that the mask names.
+    fn copy_carried<L: Lanes>(&self, mask: L::Mask, start: usize, to: &mut Carried);
     /// Can any of the rays meet this sphere? Where it is not known, yes.
     fn may_meet(&self, _sphere: &Sphere) -> bool {
         true
@@ -61,10 +69,10 @@ pub(crate) trait Generation {
     #[inline(always)]
     fn fill<L: Lanes>(&self, packet: &mut Packet, first: usize, shear: bool) -> u64 {
         let count = (self.len() - first).min(PACKET);
+        let (t_min, t_max) = (L::splat(P::T_MIN), L::splat(f64::INFINITY));
         for start in (0..count).step_by(L::WIDTH) {
-            let (origin, dir) = self.ways::<L>(first + start);
-            let Load { t_min, source, .. } = self.loads(first + start);
-            packet.set(start, origin, dir, t_min, L::splat(f64::INFINITY), source, shear);
+            let (origin, dir) = self.lines::<L>(first + start);
+            packet.set(start, origin, dir, t_min, t_max, self.sources(first + start), shear);
         }
         u64::MAX >> (PACKET - count)
     }
@@ -81,64 +89,47 @@ pub(crate) trait Generation {
     }
 }
 
-/// What rays carry and where they come from, in lanes.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Load<L: Lanes> {
-    pub weight: Weight<L>,
-    /// No hit up to here counts; with real optics none without a closer look ([`Leaving`](super::leaving::Leaving)).
-    pub t_min: L,
-    /// The primitive that the ray leaves, −1 for none.
-    pub source: L,
-    /// Row of the parent ray in the generation before.
-    pub parent: L,
-    /// Number of the pixel within the tile.
-    pub pixel: L,
-    /// In which solids the ray is: a handle of [`Media`](super::media::Media).
-    pub medium: L,
-    /// Which of the bands of light; [`WHITE`](super::media::WHITE) for all of it.
-    pub band: L,
-    /// With real optics, from the place that a mirrored ray leaves to where it is asked what it meets: [`back`](super::leaving::back)
-    /// towards where its light came from. The same for one that goes on through what is only partly there
-    /// ([`through`](super::leaving::through)). Zero for others.
-    pub back: Vec3<L>,
-}
-
 /// Mirror rays, and behind them refracted ones.
-///
-/// Whole numbers travel as `f64`, in which every `u32` is exact, so that all columns are of one kind.
-#[derive(Debug, Default)]
-pub(crate) struct RayQueue {
-    /// Origin, direction, attenuation, factor, `t_min`, source, parent, pixel, medium, band, `back`.
-    rays: Columns<21>,
+#[derive(Debug)]
+pub(crate) struct RayQueue<P: Propagation> {
+    rays: Rays,
+    travel: P::Travel,
+    carried: Carried,
     /// How many mirror rays stand in front.
     mirror: usize,
 }
 
-const LOAD: usize = 6;
-const PIXEL: usize = 15;
+impl<P: Propagation> Default for RayQueue<P> {
+    fn default() -> Self {
+        Self { rays: Rays::default(), travel: P::Travel::default(), carried: Carried::default(), mirror: 0 }
+    }
+}
 
-impl RayQueue {
+impl<P: Propagation> RayQueue<P> {
     #[inline(always)]
     pub fn clear(&mut self) {
         self.rays.clear();
+        self.travel.clear();
+        self.carried.clear();
         self.mirror = 0;
     }
 
-    /// Appends the mirror or refracted rays that the mask names, mirror rays first.
+    /// Appends the mirror or refracted rays that the mask names, mirror rays first, and what they carry.
     #[inline(always)]
-    pub fn push<L: Lanes>(&mut self, kind: RayKind, mask: L::Mask, rays: &Rays<L>) {
+    pub fn push<L: Lanes, T: Record>(
+        &mut self,
+        kind: RayKind,
+        mask: L::Mask,
+        rays: &Outgoing<L, P>,
+        carried: &Row<T, L>,
+    ) {
         if !mask.any() {
             return;
         }
-        let Rays { origin: o, dir: d, load } = *rays;
-        let Load { weight: Weight { attenuation: a, factor: f }, t_min, source, parent, pixel, medium, band, back: v } =
-            load;
         let before = self.len();
-        let row = [
-            o.x, o.y, o.z, d.x, d.y, d.z, a.r, a.g, a.b, f.r, f.g, f.b, t_min, source, parent, pixel, medium, band,
-            v.x, v.y, v.z,
-        ];
-        self.rays.push(mask, row);
+        self.rays.push(mask, &rays.ray);
+        self.travel.push(mask, &rays.travel);
+        self.carried.push::<L, T>(mask, carried);
         self.count(kind, self.len() - before);
     }
 
@@ -153,23 +144,27 @@ impl RayQueue {
     #[inline(always)]
     pub fn append(&mut self, other: &Self) {
         self.rays.append(&other.rays);
+        self.travel.append(&other.travel);
+        self.carried.append(&other.carried);
         self.mirror += other.mirror;
     }
 
     /// Appends one ray of another queue.
     pub fn copy_row(&mut self, from: &Self, row: usize) {
         self.rays.copy_row(&from.rays, row);
+        self.travel.copy_row(&from.travel, row);
+        self.carried.copy_row(&from.carried, row);
         self.count(from.kind(row), 1);
     }
 
-    /// The pixels of the rays.
+    /// The pixel of a ray, within the tile.
     #[inline(always)]
-    pub fn pixels(&self) -> impl Iterator<Item = usize> + '_ {
-        self.rays.column(PIXEL).iter().map(|&pixel| index(pixel))
+    pub fn pixel(&self, row: usize) -> usize {
+        index(self.rays.pixel::<f64>(row))
     }
 }
 
-impl Generation for RayQueue {
+impl<P: Propagation> Generation<P> for RayQueue<P> {
     #[inline(always)]
     fn len(&self) -> usize {
         self.rays.len()
@@ -181,20 +176,99 @@ impl Generation for RayQueue {
     }
 
     #[inline(always)]
-    fn ways<L: Lanes>(&self, start: usize) -> (Vec3<L>, Vec3<L>) {
-        let [x, y, z, dx, dy, dz] = self.rays.group(0, start);
-        (Vec3::new(x, y, z), Vec3::new(dx, dy, dz))
+    fn lines<L: Lanes>(&self, start: usize) -> (Vec3<L>, Vec3<L>) {
+        (self.rays.origin(start), self.rays.dir(start))
     }
 
     #[inline(always)]
-    fn loads<L: Lanes>(&self, start: usize) -> Load<L> {
-        let [r, g, b, fr, fg, fb, t_min, source, parent, pixel, medium, band, x, y, z] = self.rays.group(LOAD, start);
-        let weight = Weight { attenuation: Rgb::new(r, g, b), factor: Rgb::new(fr, fg, fb) };
-        Load { weight, t_min, source, parent, pixel, medium, band, back: Vec3::new(x, y, z) }
+    fn sources<L: Lanes>(&self, start: usize) -> L {
+        self.rays.source(start)
     }
 
     #[inline(always)]
-    fn pixel(&self, row: usize) -> usize {
-        index(self.rays.at(PIXEL, row))
+    fn parents<L: Lanes>(&self, start: usize) -> L {
+        self.rays.parent(start)
+    }
+
+    #[inline(always)]
+    fn pixels<L: Lanes>(&self, start: usize) -> L {
+        self.rays.pixel(start)
+    }
+
+    #[inline(always)]
+    fn travel<L: Lanes>(&self, start: usize) -> Row<P::Travel, L> {
+        self.travel.rows(start)
+    }
+
+    #[inline(always)]
+    fn carried<L: Lanes, T: Record>(&self, start: usize) -> Row<T, L> {
+        self.carried.rows::<L, T>(start)
+    }
+
+    #[inline(always)]
+    fn copy_carried<L: Lanes>(&self, mask: L::Mask, start: usize, to: &mut Carried) {
+        to.push_rows::<L>(mask, &self.carried, start);
+    }
+}
+
+/// The rays that leave the hits of a generation, on their way into a queue.
+#[derive(Debug)]
+pub(crate) struct Children<P: Propagation> {
+    mirror: RayQueue<P>,
+    refracted: RayQueue<P>,
+    /// Refracted rays of white ones that have split, by bands; none where nothing disperses.
+    bands: Vec<RayQueue<P>>,
+}
+
+impl<P: Propagation> Children<P> {
+    /// For light that splits into so many bands.
+    pub fn new(bands: usize) -> Self {
+        let bands = (0..bands).map(|_| RayQueue::default()).collect();
+        Self { mirror: RayQueue::default(), refracted: RayQueue::default(), bands }
+    }
+
+    /// Appends the rays of a kind that the mask names.
+    #[inline(always)]
+    pub fn push<L: Lanes, T: Record>(
+        &mut self,
+        kind: RayKind,
+        mask: L::Mask,
+        rays: &Outgoing<L, P>,
+        carried: &Row<T, L>,
+    ) {
+        let queue = if kind == RayKind::Mirror { &mut self.mirror } else { &mut self.refracted };
+        queue.push::<L, T>(kind, mask, rays, carried);
+    }
+
+    /// Into how many bands light may split; 0 where nothing disperses.
+    #[inline(always)]
+    pub fn bands(&self) -> usize {
+        self.bands.len()
+    }
+
+    /// Appends refracted rays of a band, which the mask names, of white ones that split here.
+    #[inline(always)]
+    pub fn push_band<L: Lanes, T: Record>(
+        &mut self,
+        band: usize,
+        mask: L::Mask,
+        rays: &Outgoing<L, P>,
+        carried: &Row<T, L>,
+    ) {
+        self.bands[band].push::<L, T>(RayKind::Refracted, mask, rays, carried);
+    }
+
+    /// All of them: mirror rays, refracted rays, then those of the bands, each in the order of their parents. Nothing is left;
+    /// the memory of the empty queue is used for the next ones.
+    #[inline(always)]
+    pub fn take(&mut self, empty: RayQueue<P>) -> RayQueue<P> {
+        let mut all = std::mem::replace(&mut self.mirror, empty);
+        all.append(&self.refracted);
+        self.refracted.clear();
+        for band in &mut self.bands {
+            all.append(band);
+            band.clear();
+        }
+        all
     }
 }

@@ -1,19 +1,18 @@
 //! Writes down the rays of a pixel while the engine traces them: there is no second tracer.
 
 use super::hits::{Batch, Hits};
-use super::leaving::{Leaving, back, until_clear};
-use super::lecture::T_MIN;
-use super::media::{Media, WHITE};
-use super::observer::Observer;
+use super::leaving::Leaving;
+use super::observer::{Observer, StateOf};
+use super::propagation::Propagation;
 use super::queue::{Generation, RayQueue};
-use super::shading::{ShadowRays, light_on};
+use super::shading::{ShadowRays, faces, light_on};
 use super::tree::{Ended, Hit, Lit, Node, RayTree};
-use super::whitted;
 use crate::film::Rgb;
 use crate::geometry::Vec3;
+use crate::integrate::Integrator;
 use crate::lanes::index;
-use crate::scene::{Integrator, Shadows};
-use crate::world::{LightSource, NO_SOLID, World};
+use crate::scene::Shadows;
+use crate::world::{LightSource, World};
 
 /// Writes down every generation of a pixel.
 #[derive(Debug, Default)]
@@ -31,39 +30,51 @@ pub(crate) struct Recorder {
 }
 
 impl Observer for Recorder {
-    fn ambient(&mut self, hits: &Hits, world: &World) {
+    fn ambient<P: Propagation>(&mut self, hits: &Hits<P>, world: &World) {
         self.ambient.clear();
         self.ambient.extend((0..hits.len()).map(|row| hits.batch::<f64>(world, row).local_color()));
         self.lights.clear();
         self.lights.resize(hits.len(), Vec::new());
     }
 
-    fn light(&mut self, world: &World, light: &LightSource, hits: &Hits, shadow: &ShadowRays) {
+    fn light<P: Propagation>(
+        &mut self,
+        world: &World,
+        shadows: Shadows,
+        light: &LightSource,
+        hits: &Hits<P>,
+        asks: &[u64],
+        shadow: &ShadowRays,
+    ) {
         for row in 0..hits.len() {
             let batch = hits.batch::<f64>(world, row);
+            if asks[row / 64] >> (row % 64) & 1 == 0 {
+                // Clear surfaces do not ask for lights.
+                continue;
+            }
             let lit = shadow.is_lit(row);
             let (wi, distance) = light.seen_from(batch.point());
-            let mut facing = batch.active && batch.normal().dot(wi) > 0.0;
-            if world.render.integrator == Integrator::Whitted {
-                if !whitted::has_local_color(&batch) {
-                    // Clear surfaces do not ask for lights.
-                    continue;
-                }
-                facing = facing && batch.geometric_normal().dot(wi) > 0.0;
-            }
-            let share = light.spot.as_ref().map_or(1.0, |spot| spot.share(wi));
+            let facing = faces(&batch, wi);
+            let falloff = light.spot.as_ref().map_or(1.0, |spot| spot.falloff(wi));
             let [diffuse, highlight] =
-                if lit { light_on::<f64>(&batch, light, shadow, row) } else { [Rgb::black(); 2] };
-            let transmittance = if lit { shadow.left(row).unwrap_or(Rgb::gray(1.0)) * share } else { Rgb::black() };
-            let between = if facing && share > 0.0 { between(world, &batch, wi, distance) } else { Vec::new() };
+                if lit { light_on::<f64, P>(&batch, light, shadow, row) } else { [Rgb::black(); 2] };
+            let transmittance = if lit { shadow.left(row).unwrap_or(Rgb::gray(1.0)) * falloff } else { Rgb::black() };
+            let asks = facing && falloff > 0.0 && shadows != Shadows::Off;
+            let between = if asks { between(world, &batch, wi, distance, shadows) } else { Vec::new() };
             self.lights[row].push(Lit { wi, distance, facing, transmittance, between, diffuse, highlight });
         }
     }
 
-    fn generation(&mut self, rays: &impl Generation, hits: &Hits, media: &Media<'_>) {
-        let (start, world) = (self.tree.nodes.len(), media.world());
+    fn generation<I: Integrator>(
+        &mut self,
+        world: &World,
+        rays: &impl Generation<I::Propagation>,
+        hits: &Hits<I::Propagation>,
+        state: &StateOf<'_, I>,
+    ) {
+        let start = self.tree.nodes.len();
         for row in 0..rays.len() {
-            self.push(rays, row, None, media);
+            self.push::<I>(world, rays, row, None, state);
         }
         for row in 0..hits.len() {
             let batch = hits.batch::<f64>(world, row);
@@ -72,23 +83,16 @@ impl Observer for Recorder {
             if hits.is_sky(row) {
                 continue;
             }
-            let (mut eta, mut outer) = ([world.eta_outside; 2], true);
-            if world.render.integrator == Integrator::Whitted {
-                let [before, after, band] = batch.media_of(0);
-                eta = [media.eta(before, band), media.eta(after, band)];
-                outer = batch.face().outer > 0.0;
-            } else if world.materials[batch.material_number(0) as usize].is_transparent() && batch.is_sphere() {
-                eta[1] = world.materials[batch.material_number(0) as usize].eta;
-            }
+            let (eta, outer) = I::Propagation::sides_of_hit(state, &batch);
             node.hit = Some(Hit {
                 primitive: hits.primitive(row),
                 material: batch.material_number(0),
-                t: hits.t(row),
+                t: batch.t(),
                 point: batch.point(),
-                normal: hits.normal(row),
+                normal: batch.normal(),
                 eta,
                 outer,
-                throughput: batch.weight().throughput(),
+                throughput: I::arriving(&batch),
                 local: batch.local_color(),
                 ambient: self.ambient[row],
                 emission: world.materials[batch.material_number(0) as usize].emission,
@@ -99,8 +103,15 @@ impl Observer for Recorder {
         self.depth += 1;
     }
 
-    fn ended(&mut self, children: &RayQueue, row: usize, why: Ended, media: &Media<'_>) {
-        self.push(children, row, Some(why), media);
+    fn ended<I: Integrator>(
+        &mut self,
+        world: &World,
+        children: &RayQueue<I::Propagation>,
+        row: usize,
+        why: Ended,
+        state: &StateOf<'_, I>,
+    ) {
+        self.push::<I>(world, children, row, Some(why), state);
     }
 
     fn sample(&mut self, lost: &[Rgb]) {
@@ -111,20 +122,26 @@ impl Observer for Recorder {
 }
 
 impl Recorder {
-    fn push(&mut self, rays: &impl Generation, row: usize, ended: Option<Ended>, media: &Media<'_>) {
-        let ((origin, dir), load) = (rays.ways::<f64>(row), rays.loads::<f64>(row));
-        let (set, band) = (index(load.medium) as u32, index(load.band) as u32);
-        let solid = media.top(set);
+    fn push<I: Integrator>(
+        &mut self,
+        world: &World,
+        rays: &impl Generation<I::Propagation>,
+        row: usize,
+        ended: Option<Ended>,
+        state: &StateOf<'_, I>,
+    ) {
+        let (origin, dir) = rays.lines::<f64>(row);
+        let (eta, medium, band) = I::Propagation::medium_of_ray(state, world, &rays.travel(row));
         self.tree.nodes.push(Node {
             kind: rays.kind(row),
             depth: self.depth,
-            parent: (self.depth > 0).then(|| self.parents + index(load.parent)),
+            parent: (self.depth > 0).then(|| self.parents + index(rays.parents(row))),
             origin,
             dir,
-            band: Some(band).filter(|&band| band != WHITE),
-            medium: (solid != NO_SOLID).then_some(solid),
-            eta: media.eta(set, band),
-            throughput: load.weight.throughput(),
+            band,
+            medium,
+            eta,
+            throughput: I::throughput(&rays.carried::<f64, I::Carried>(row)),
             hit: None,
             contribution: Rgb::black(),
             ended,
@@ -134,31 +151,19 @@ impl Recorder {
 }
 
 /// What lies between a hit and a light, up to what blocks it.
-fn between(world: &World, hit: &Batch<'_, f64>, wi: Vec3, distance: f64) -> Vec<(u32, f64)> {
-    if world.render.shadows() == Shadows::Off {
-        return Vec::new();
-    }
-    let real_optics = world.render.integrator == Integrator::Whitted;
-    let tinted = world.render.shadows() == Shadows::Tinted;
-    let (mut origin, source, mut clear) = (hit.point(), hit.primitive(), T_MIN);
-    if real_optics {
-        origin = origin + hit.wo() * back(world, hit.t());
-        clear = until_clear(world, hit.geometric_normal().dot(wi));
-    }
-    let leaving = Leaving { origin, dir: wi, source, clear, wo: hit.wo() };
-    let mut crossings = Vec::new();
+fn between<P: Propagation>(
+    world: &World,
+    hit: &Batch<'_, f64, P>,
+    wi: Vec3,
+    distance: f64,
+    shadows: Shadows,
+) -> Vec<(u32, f64)> {
+    let (origin, clear) = P::shadow_start(hit, wi);
+    let ray = Leaving { origin, dir: wi, source: hit.primitive(), clear, wo: hit.wo() };
+    let (mut crossings, tinted) = (Vec::new(), shadows == Shadows::Tinted);
     world.tree.crossings(origin, wi, [-world.behind, distance], &mut crossings);
-    crossings.retain(|&(t, primitive)| {
-        if real_optics {
-            let is_hole = tinted && world.is_hole(primitive as usize, origin + wi * t);
-            return t < distance && leaving.meets(world, primitive, t) && !is_hole;
-        }
-        // The lecture's spheres are met from outside only.
-        let sphere = world.spheres.get(primitive as usize);
-        let enters = sphere.is_none_or(|sphere| t < (sphere.center - origin).dot(wi));
-        t > T_MIN && t < distance && f64::from(primitive) != source && enters
-    });
-    let blocks = |&(t, primitive): &(f64, u32)| world.blocks_light_at(primitive, origin + wi * t);
+    crossings.retain(|&crossing| crossing.0 < distance && P::is_in_the_way(world, &ray, crossing, tinted));
+    let blocks = |&(t, primitive): &(f64, u32)| world.blocks_light_at(primitive, origin + wi * t, shadows);
     let end = crossings.iter().position(blocks).map_or(crossings.len(), |at| at + 1);
     crossings.truncate(end);
     crossings.into_iter().map(|(t, primitive)| (primitive, t)).collect()

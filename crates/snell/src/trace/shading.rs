@@ -1,24 +1,35 @@
 //! The local colour of the hits: ambient light, then light by light, with shadows.
 
 use super::hits::{Batch, Hits};
-use super::leaving::{Leaving, back, until_clear};
-use super::lecture::T_MIN;
-use super::media::{Media, OUTSIDE};
+use super::leaving::Leaving;
+use super::media::OUTSIDE;
 use super::observer::Observer;
-use super::whitted;
+use super::propagation::Propagation;
 use crate::film::Rgb;
 use crate::geometry::Vec3;
 use crate::geometry::bvh::{Nearest, PACKET, Packet};
-use crate::lanes::{Columns, Lanes, Mask, index};
+use crate::lanes::{Columns, Kernel, Lanes, Mask, Number, Table, index, table};
 use crate::optics::phong::{self, Surface};
-use crate::scene::{Integrator, Shadows};
+use crate::scene::Shadows;
 use crate::world::{LightSource, World};
 
-/// Columns of the rays towards a light.
-const HIT: usize = 0;
-const ORIGIN: usize = 1;
-const DISTANCE: usize = 7;
-const CLEAR: usize = 9;
+table! {
+    /// A ray towards a light.
+    ShadowRay,
+    /// The same in columns.
+    ShadowRayColumns {
+        /// Row of the hit.
+        hit: Number,
+        origin: Vec3,
+        dir: Vec3,
+        /// Of the light.
+        distance: Number,
+        /// The primitive that the ray leaves.
+        source: Number,
+        /// Up to here nothing blocks the light, with surfaces that are met from both sides without a closer look.
+        clear_at: Number,
+    }
+}
 
 /// Rays towards one light; the memory is used again for the next one.
 #[derive(Debug, Default)]
@@ -27,11 +38,17 @@ pub(crate) struct ShadowRays {
     wi: Columns<3>,
     /// Whether the light reaches it, a bit per hit.
     lit: Vec<u64>,
-    /// Row of the hit, origin, direction, distance of the light, primitive that the ray leaves, and up to where nothing blocks the
-    /// light: with real optics, without a closer look, and from a place in front of the hit.
-    rays: Columns<10>,
+    rays: ShadowRayColumns,
     /// With tinted shadows what of the light reaches each hit.
     light: Columns<3>,
+}
+
+/// What shadow rays need of their worker.
+pub(crate) struct Scenery<'b, 'a, P: Propagation> {
+    pub world: &'b World,
+    pub shadows: Shadows,
+    pub state: &'b mut P::State<'a>,
+    pub packet: &'b mut Packet,
 }
 
 impl ShadowRays {
@@ -47,76 +64,66 @@ impl ShadowRays {
 
     /// Decides which hits a light reaches: those that face it, and, with shadows, see it. Returns how many rays that took.
     #[inline(always)]
-    fn aim<L: Lanes>(&mut self, media: &mut Media<'_>, hits: &Hits, light: &LightSource, packet: &mut Packet) -> usize {
-        let world = media.world();
+    fn aim<L: Lanes, P: Propagation>(
+        &mut self,
+        scenery: &mut Scenery<'_, '_, P>,
+        hits: &Hits<P>,
+        light: &LightSource,
+        asks: &[u64],
+    ) -> usize {
+        let (world, tinted) = (scenery.world, scenery.shadows == Shadows::Tinted);
         self.wi.clear();
         self.rays.clear();
         self.lit.clear();
         self.lit.resize(hits.len().div_ceil(64), 0);
-        let with_shadows = world.render.shadows() != Shadows::Off;
-        let tinted = world.render.shadows() == Shadows::Tinted;
         self.light.clear();
-        let real_optics = world.render.integrator == Integrator::Whitted;
         let mut count = 0;
         for start in (0..hits.len()).step_by(L::WIDTH) {
             let batch = hits.batch::<L>(world, start);
             let (point, source) = (batch.point(), batch.primitive());
             let (wi, distance) = light.seen_from(point);
-            let shows = if real_optics { whitted::has_local_color(&batch) } else { batch.active };
-            let mut lit = shows & batch.normal().dot(wi).gt(L::splat(0.0));
-            if real_optics {
-                // Light does not shine through the body of a smoothed mesh.
-                lit = lit & batch.geometric_normal().dot(wi).gt(L::splat(0.0));
-            }
+            let mut lit = bits_at::<L>(asks, start) & faces(&batch, wi);
             if let Some(spot) = &light.spot {
-                lit = lit & spot.share(wi).gt(L::splat(0.0));
+                lit = lit & spot.falloff(wi).gt(L::splat(0.0));
             }
             self.wi.push(L::Mask::first(hits.len() - start), wi.into());
             let mut asked = lit;
-            if with_shadows && (tinted || lit.any()) {
+            if scenery.shadows != Shadows::Off && (tinted || lit.any()) {
                 count += lit.bits().count_ones() as usize;
                 if tinted {
                     self.light.push(L::Mask::first(hits.len() - start), Rgb::gray(1.0).splat::<L>().into());
-                    // Within a medium every way is dimmed.
-                    let within = lit & !batch.face().before.eq(L::splat(f64::from(OUTSIDE)));
+                    // Within a medium all light is dimmed.
+                    let within = lit & !P::medium_before(&batch).eq(L::splat(f64::from(OUTSIDE)));
                     asked = asked & !within;
-                    lit = self.tint::<L>(media, &batch, start, lit, within, (wi, distance));
+                    lit = self.tint::<L, P>(scenery, &batch, start, lit, within, (wi, distance));
                 }
                 asked = asked & lit;
                 if let Some(spheres) = world.tree.few() {
-                    let t_min = if real_optics { 0.0 } else { T_MIN };
-                    let nothing = Nearest::none(asked, L::splat(t_min), distance, source);
-                    let hit = if real_optics {
-                        nothing.among(true, spheres, point, wi).hit
-                    } else {
-                        nothing.among(false, spheres, point, wi).hit
-                    };
+                    let nothing = Nearest::none(asked, L::splat(P::T_MIN), distance, source);
+                    let hit = nothing.among(P::TWO_SIDED, spheres, point, wi).hit;
                     lit = if tinted {
-                        self.tint::<L>(media, &batch, start, lit, hit, (wi, distance))
+                        self.tint::<L, P>(scenery, &batch, start, lit, hit, (wi, distance))
                     } else {
                         lit & !hit
                     };
                 } else {
-                    let (row, mut p, mut clear) = (L::ramp(start), point, L::splat(T_MIN));
-                    if real_optics {
-                        p = point + batch.wo() * back(world, batch.t());
-                        clear = until_clear(world, batch.geometric_normal().dot(wi));
-                    }
-                    self.rays.push(asked, [row, p.x, p.y, p.z, wi.x, wi.y, wi.z, distance, source, clear]);
+                    let (origin, clear) = P::shadow_start(&batch, wi);
+                    let hit = L::ramp(start);
+                    self.rays.push(asked, &ShadowRay { hit, origin, dir: wi, distance, source, clear_at: clear });
                 }
             }
             self.lit[start / 64] |= u64::from(lit.bits()) << (start % 64);
         }
-        self.block::<L>(media, hits, packet);
+        self.block::<L, P>(scenery, hits);
         count
     }
 
     /// Follows the light of some of the lit hits straight through what is transparent; says which are lit then.
     #[inline(always)]
-    fn tint<L: Lanes>(
+    fn tint<L: Lanes, P: Propagation>(
         &mut self,
-        media: &mut Media<'_>,
-        hits: &Batch<'_, L>,
+        scenery: &mut Scenery<'_, '_, P>,
+        hits: &Batch<'_, L, P>,
         start: usize,
         lit: L::Mask,
         dimmed: L::Mask,
@@ -125,20 +132,20 @@ impl ShadowRays {
         if !dimmed.any() {
             return lit;
         }
-        let (source, medium, wo) = (hits.primitive(), hits.face().before, hits.wo());
-        let point = hits.point() + wo * back(hits.world, hits.t());
-        let clear = until_clear(hits.world, hits.geometric_normal().dot(wi));
+        let (source, medium, wo) = (hits.primitive(), P::medium_before(hits), hits.wo());
+        let (origin, clear) = P::shadow_start(hits, wi);
         let mut dark = 0;
         for lane in 0..L::WIDTH {
             if dimmed.test(lane) {
-                let way = Leaving {
-                    origin: point.lane(lane),
+                let ray = Leaving {
+                    origin: origin.lane(lane),
                     dir: wi.lane(lane),
                     source: source.lane(lane),
                     clear: clear.lane(lane),
                     wo: wo.lane(lane),
                 };
-                let passed = media.light_along(&way, distance.lane(lane), index(medium.lane(lane)) as u32);
+                let medium = index(medium.lane(lane)) as u32;
+                let passed = P::light_along(scenery.state, &ray, distance.lane(lane), medium);
                 dark |= u32::from(passed == Rgb::gray(0.0)) << lane;
                 self.light.replace::<f64, 3>(0, start + lane, passed.into());
             }
@@ -148,31 +155,29 @@ impl ShadowRays {
 
     /// Takes the light from the hits whose rays towards it meet anything, or what that takes of it.
     #[inline(always)]
-    fn block<L: Lanes>(&mut self, media: &mut Media<'_>, hits: &Hits, packet: &mut Packet) {
-        let world = media.world();
-        let tinted = world.render.shadows() == Shadows::Tinted;
-        let real_optics = world.render.integrator == Integrator::Whitted;
+    fn block<L: Lanes, P: Propagation>(&mut self, scenery: &mut Scenery<'_, '_, P>, hits: &Hits<P>) {
+        let world = scenery.world;
         let shear = world.tree.has_triangles();
         for first in (0..self.rays.len()).step_by(PACKET) {
             let count = (self.rays.len() - first).min(PACKET);
             for start in (0..count).step_by(L::WIDTH) {
-                let [x, y, z, dx, dy, dz, distance, source, clear] = self.rays.group::<L, 9>(ORIGIN, first + start);
+                let ShadowRay { origin, dir, distance, source, clear_at, .. } = self.rays.rows::<L>(first + start);
                 // A wall may be met a little behind the start, in the corner of a room.
-                let t_min = if real_optics { L::splat(-world.behind) } else { clear };
-                packet.set(start, Vec3::new(x, y, z), Vec3::new(dx, dy, dz), t_min, distance, source, shear);
+                let t_min = if P::TWO_SIDED { L::splat(-world.behind) } else { clear_at };
+                scenery.packet.set(start, origin, dir, t_min, distance, source, shear);
             }
-            let mut blocked = world.tree.intersect::<L, true>(packet, u64::MAX >> (PACKET - count));
-            if real_optics {
-                blocked = self.look_closer::<L>(world, hits, packet, first, blocked);
+            let mut blocked = world.tree.intersect::<L, true>(scenery.packet, u64::MAX >> (PACKET - count));
+            if P::TWO_SIDED {
+                blocked = self.look_closer::<L, P>(scenery, hits, first, blocked);
             }
             while blocked != 0 {
                 let row = first + blocked.trailing_zeros() as usize;
-                let hit = index(self.rays.at(HIT, row));
+                let hit = index(self.rays.hit(row));
                 blocked &= blocked - 1;
                 let mut dark = true;
-                if tinted {
-                    let way = self.leaving(world, hits, row);
-                    let passed = media.light_along(&way, self.rays.at(DISTANCE, row), OUTSIDE);
+                if scenery.shadows == Shadows::Tinted {
+                    let ray = self.leaving(world, hits, row);
+                    let passed = P::light_along(scenery.state, &ray, self.rays.distance(row), OUTSIDE);
                     self.light.replace::<f64, 3>(0, hit, passed.into());
                     dark = passed == Rgb::gray(0.0);
                 }
@@ -185,20 +190,20 @@ impl ShadowRays {
 
     /// Which of the blocked rays of a packet are still blocked, if what is only a part of the place that they leave does not count.
     #[inline(always)]
-    fn look_closer<L: Lanes>(
+    fn look_closer<L: Lanes, P: Propagation>(
         &self,
-        world: &World,
-        hits: &Hits,
-        packet: &mut Packet,
+        scenery: &mut Scenery<'_, '_, P>,
+        hits: &Hits<P>,
         first: usize,
         mut blocked: u64,
     ) -> u64 {
+        let Scenery { world, packet, shadows, .. } = scenery;
         let (mut again, mut waiting) = (0, blocked);
         while waiting != 0 {
             let ray = waiting.trailing_zeros() as usize & (PACKET - 1);
             waiting &= waiting - 1;
-            let [distance, clear] = [DISTANCE, CLEAR].map(|column| self.rays.at(column, first + ray));
-            if packet.t[ray] <= clear && !self.leaving(world, hits, first + ray).is_blocked(world, distance) {
+            let (distance, clear) = (self.rays.distance(first + ray), self.rays.clear_at(first + ray));
+            if packet.t[ray] <= clear && !self.leaving(world, hits, first + ray).is_blocked(world, distance, *shadows) {
                 blocked &= !(1 << ray);
                 again |= 1 << ray;
                 (packet.t_min[ray], packet.t[ray], packet.primitive[ray]) = (clear, distance, -1.0);
@@ -208,56 +213,75 @@ impl ShadowRays {
     }
 
     /// The ray of a row.
-    fn leaving(&self, world: &World, hits: &Hits, row: usize) -> Leaving {
-        let [x, y, z, dx, dy, dz, _, source, clear] = self.rays.group::<f64, 9>(ORIGIN, row);
-        let wo = hits.batch::<f64>(world, index(self.rays.at(HIT, row))).wo();
-        Leaving { origin: Vec3::new(x, y, z), dir: Vec3::new(dx, dy, dz), source, clear, wo }
+    fn leaving<P: Propagation>(&self, world: &World, hits: &Hits<P>, row: usize) -> Leaving {
+        let ShadowRay { hit, origin, dir, source, clear_at, .. } = self.rays.rows::<f64>(row);
+        Leaving { origin, dir, source, clear: clear_at, wo: hits.batch::<f64>(world, index(hit)).wo() }
     }
 }
 
-/// Sums up the local colour of every hit. Returns how many shadow rays that took.
+/// Which hits face a light in this direction? Light does not shine through the body of a smoothed mesh, either.
 #[inline(always)]
-pub(crate) fn local_colors<L: Lanes>(
-    media: &mut Media<'_>,
-    hits: &mut Hits,
-    shadow: &mut ShadowRays,
-    packet: &mut Packet,
-    observer: &mut impl Observer,
-) -> usize {
-    let world = media.world();
-    let ambient = world.ambient.splat::<L>();
-    for start in (0..hits.len()).step_by(L::WIDTH) {
-        let light = ambient * hits.batch::<L>(world, start).patterned(|m| m.ka);
-        hits.set_local_color(start, light);
-    }
-    observer.ambient(hits, world);
-    let mut rays = 0;
-    for light in &world.lights {
-        rays += shadow.aim::<L>(media, hits, light, packet);
-        observer.light(world, light, hits, shadow);
+pub(super) fn faces<L: Lanes, P: Propagation>(hits: &Batch<'_, L, P>, wi: Vec3<L>) -> L::Mask {
+    let faces = hits.active & hits.normal().dot(wi).gt(L::splat(0.0));
+    if P::TWO_SIDED { faces & hits.geometric_normal().dot(wi).gt(L::splat(0.0)) } else { faces }
+}
+
+/// The bits of some hits, from a row on.
+#[inline(always)]
+fn bits_at<L: Lanes>(bits: &[u64], start: usize) -> L::Mask {
+    L::Mask::from_bits((bits[start / 64] >> (start % 64)) as u32)
+}
+
+/// Sums up the local colour of every hit, and says how many shadow rays that took.
+pub(crate) struct LocalColors<'c, 'b, 'a, P: Propagation, O> {
+    pub scenery: Scenery<'b, 'a, P>,
+    pub hits: &'c mut Hits<P>,
+    pub shadow: &'c mut ShadowRays,
+    pub observer: &'c mut O,
+    /// Which hits ask for lights, a bit for each.
+    pub asks: &'c [u64],
+}
+
+impl<P: Propagation, O: Observer> Kernel for LocalColors<'_, '_, '_, P, O> {
+    type Output = usize;
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> usize {
+        let Self { mut scenery, hits, shadow, observer, asks } = self;
+        let world = scenery.world;
+        let ambient = world.ambient.splat::<L>();
         for start in (0..hits.len()).step_by(L::WIDTH) {
-            let lit = L::Mask::from_bits((shadow.lit[start / 64] >> (start % 64)) as u32);
-            if !lit.any() {
-                continue;
-            }
-            let batch = hits.batch::<L>(world, start);
-            let before = batch.local_color();
-            let [diffuse, highlight] = light_on(&batch, light, shadow, start);
-            hits.set_local_color(start, Rgb::select(lit, before + diffuse + highlight, before));
+            let light = ambient * hits.batch::<L>(world, start).patterned(|m| m.ka);
+            hits.set_local_color(start, light);
         }
+        observer.ambient(hits, world);
+        let mut rays = 0;
+        for light in &world.lights {
+            rays += shadow.aim::<L, P>(&mut scenery, hits, light, asks);
+            observer.light(world, scenery.shadows, light, hits, asks, shadow);
+            for start in (0..hits.len()).step_by(L::WIDTH) {
+                let lit = bits_at::<L>(&shadow.lit, start);
+                if !lit.any() {
+                    continue;
+                }
+                let batch = hits.batch::<L>(world, start);
+                let before = batch.local_color();
+                let [diffuse, highlight] = light_on(&batch, light, shadow, start);
+                hits.set_local_color(start, Rgb::select(lit, before + diffuse + highlight, before));
+            }
+        }
+        rays
     }
-    rays
 }
 
 /// What a light adds to the hits of a batch that it reaches: diffuse, and highlight.
 #[inline(always)]
-pub(super) fn light_on<L: Lanes>(
-    batch: &Batch<'_, L>,
+pub(super) fn light_on<L: Lanes, P: Propagation>(
+    batch: &Batch<'_, L, P>,
     light: &LightSource,
     shadow: &ShadowRays,
     start: usize,
 ) -> [Rgb<L>; 2] {
-    let lit = L::Mask::from_bits((shadow.lit[start / 64] >> (start % 64)) as u32);
+    let lit = bits_at::<L>(&shadow.lit, start);
     let surface =
         Surface { kd: batch.patterned(|m| m.kd), ks: batch.material_color(|m| m.ks), spow: batch.material(|m| m.spow) };
     let mut intensity = light.color.splat::<L>();
@@ -268,8 +292,8 @@ pub(super) fn light_on<L: Lanes>(
     let [x, y, z] = shadow.wi.group(0, start);
     let wi = Vec3::new(x, y, z);
     if let Some(spot) = &light.spot {
-        let share = spot.share(wi);
-        intensity = intensity * Rgb::new(share, share, share);
+        let falloff = spot.falloff(wi);
+        intensity = intensity * Rgb::new(falloff, falloff, falloff);
     }
     phong::light(lit, batch.normal(), batch.wo(), wi, intensity, &surface)
 }

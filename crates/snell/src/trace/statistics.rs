@@ -1,10 +1,12 @@
 //! What a render did: rays by kind and depth, and the light that was cut off.
 
+use crate::film::Rgb;
 use crate::geometry::Vec3;
+use serde::{Deserialize, Serialize};
 use std::cmp::Ordering;
 
 /// Counts and losses of a render. Independent of threads, tiles and lanes.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Statistics {
     /// Rays by kind.
     pub rays: RayCounts,
@@ -19,7 +21,7 @@ pub struct Statistics {
 }
 
 /// Rays in two solids of the same priority and of different media that cross each other.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Overlaps {
     /// How many such places rays have met.
     pub count: u64,
@@ -28,7 +30,7 @@ pub struct Overlaps {
 }
 
 /// One of them.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Overlap {
     /// The pixel whose ray met it: its number in the picture, row by row.
     pub pixel: u64,
@@ -54,7 +56,7 @@ impl Overlaps {
 
 /// Rays that met a face from inside without having entered its solid, which was passed over, or that left the scene without
 /// having left a solid.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct StrayExits {
     /// How many.
     pub count: u64,
@@ -74,7 +76,7 @@ impl StrayExits {
 }
 
 /// Rays by kind.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RayCounts {
     /// From the eye.
     pub camera: u64,
@@ -102,26 +104,39 @@ impl RayCounts {
 
 /// Light behind branches that were cut off: at the depth limit, at the limit of rays per pixel, or below `min_throughput`.
 ///
-/// Measured by the throughput of the rays that were not sent: a throughput of 0.05 means that a white thing of radiance
-/// 1 behind that branch would have made the pixel brighter by 0.05. What is really there was not looked at.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+/// Measured by the throughput of the rays that were not sent, as the mean of its channels without signs: a throughput of 0.05 means
+/// that a white thing of radiance 1 behind that branch would have made the sample brighter by 0.05. What is really there was
+/// not looked at.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct LostLight {
     /// Rays that were not sent.
     pub rays: u64,
     /// Sum of their throughput, in units of 2⁻³²: whole numbers add up to the same sum in any order.
     sum: u128,
-    /// The worst pixel's sum, in the same units, and its number in row order.
+    /// The worst pixel's sum over all of its samples, in the same units, and its number in row order.
     worst: (u64, u64),
 }
 
 const UNIT: f64 = (1u64 << 32) as f64;
 
+/// The throughput of a ray that is not sent, in whole units, which add up exactly.
+pub(crate) fn lost_units(throughput: Rgb) -> u64 {
+    // Saturates; NaN is 0.
+    (Rgb::from(throughput.to_array().map(f64::abs)).mean() * UNIT) as u64
+}
+
 impl LostLight {
-    /// Adds what one pixel lost; `pixel` is its number in the whole picture, row by row.
-    pub(crate) fn add(&mut self, pixel: u64, throughput: f64) {
-        let quantum = (throughput * UNIT) as u64; // saturates; NaN is 0
-        self.sum += u128::from(quantum);
-        self.offer_worst((quantum, pixel));
+    /// Adds what one pixel lost, in whole units; `pixel` is its number in the whole picture, row by row.
+    pub(crate) fn add(&mut self, pixel: u64, units: u64) {
+        self.sum += u128::from(units);
+        self.offer_worst((units, pixel));
+    }
+
+    /// The same, where the worst pixel is looked for anew among all: `pixels` are numbers and what was lost there.
+    pub(crate) fn with_worst_of(self, pixels: impl Iterator<Item = (u64, u64)>) -> Self {
+        let mut lost = Self { worst: (0, 0), ..self };
+        pixels.for_each(|(pixel, units)| lost.offer_worst((units, pixel)));
+        lost
     }
 
     fn offer_worst(&mut self, (sum, pixel): (u64, u64)) {
@@ -131,14 +146,14 @@ impl LostLight {
         }
     }
 
-    /// Mean throughput lost per pixel of a picture with so many pixels.
-    pub fn share(&self, pixels: u64) -> f64 {
-        self.sum as f64 / UNIT / pixels.max(1) as f64
+    /// Mean throughput lost per sample, of so many of them: pixels times samples per pixel.
+    pub fn share(&self, samples: u64) -> f64 {
+        self.sum as f64 / UNIT / samples.max(1) as f64
     }
 
-    /// The largest throughput lost in one pixel.
-    pub fn worst(&self) -> f64 {
-        self.worst.0 as f64 / UNIT
+    /// The largest throughput lost in one pixel of so many samples, as the mean of these.
+    pub fn worst(&self, spp: u32) -> f64 {
+        self.worst.0 as f64 / UNIT / f64::from(spp.max(1))
     }
 
     /// Column and row of that pixel in a picture of this width.

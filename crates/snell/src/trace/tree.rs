@@ -1,5 +1,6 @@
 //! The ray tree of one pixel: what the engine's [`Recorder`](super::recorder::Recorder) writes down while it renders.
 
+use super::pairwise::pairwise_sum;
 use super::queue::RayKind;
 use crate::film::Rgb;
 use crate::geometry::Vec3;
@@ -124,10 +125,8 @@ pub struct PixelTrace {
 impl PixelTrace {
     /// The trees added up in the engine's order: the pixel, bit for bit.
     pub fn sum(&self) -> Rgb {
-        match self.samples.as_slice() {
-            [only] => only.sum(),
-            all => mean(all.iter().fold(Rgb::black(), |sum, tree| sum + tree.sum()), all.len() as u32),
-        }
+        let sum = pairwise_sum(self.samples.iter().map(RayTree::sum), |sum, other| *sum = *sum + *other);
+        sum.map_or(Rgb::black(), |sum| mean(sum, self.samples.len() as u32))
     }
 }
 

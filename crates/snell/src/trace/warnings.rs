@@ -1,14 +1,14 @@
 //! What is odd about a picture, and is known only when it has been rendered.
 
-use super::Statistics;
+use super::{Settings, Statistics};
 use crate::scene::{Integrator, Warning, WarningCode};
 use crate::world::World;
 
 impl Statistics {
-    /// W007 and W008, where rays have met them, and W202, of a picture or a part of it with so many pixels.
-    pub fn warnings(&self, world: &World, pixels: u64) -> Vec<Warning> {
+    /// W007 and W008, where rays have met them, and W202, of what has been rendered of a picture.
+    pub fn warnings(&self, world: &World, settings: &Settings) -> Vec<Warning> {
         let messages = [
-            (WarningCode::LostLight, self.lost_light(world, pixels)),
+            (WarningCode::LostLight, self.lost_light(world, settings)),
             (WarningCode::StrayExit, self.stray_exits(world)),
             (WarningCode::Overlap, self.overlap(world)),
         ];
@@ -16,18 +16,18 @@ impl Statistics {
         found.map(|(code, message)| Warning { code, place: Vec::new(), message }).collect()
     }
 
-    fn lost_light(&self, world: &World, pixels: u64) -> Option<String> {
-        let (lost, depth) = (self.lost, world.render.max_depth);
+    fn lost_light(&self, world: &World, settings: &Settings) -> Option<String> {
+        let (lost, depth) = (self.lost, settings.max_depth);
         // With depth 0 that is what was asked for.
         (lost.rays > 0 && depth > 0).then(|| {
-            let or = if world.render.integrator == Integrator::Whitted { " or too little light" } else { "" };
+            let or = if settings.integrator == Integrator::Whitted { " or too little light" } else { "" };
             let (x, y) = lost.worst_pixel(world.camera.size[0]);
             format!(
                 "depth {depth}{or} ended {} branches; what lies behind them weighs {:.2} % of a pixel on average, {:.1} % in \
                  pixel {x},{y}",
                 lost.rays,
-                100.0 * lost.share(pixels),
-                100.0 * lost.worst(),
+                100.0 * lost.share(self.rays.camera),
+                100.0 * lost.worst(settings.spp),
             )
         })
     }

@@ -4,6 +4,9 @@ use crate::geometry::{Bounds, Vec3};
 use crate::lanes::Lanes;
 use crate::scene::{Camera, Render};
 
+/// How far from its point of the grid a sample of a pixel may be, in pixels, where there are several.
+pub(crate) const JITTER: f64 = 0.5;
+
 /// A camera with its axes, ready to make rays.
 #[derive(Clone, Debug)]
 pub struct CameraFrame {
@@ -18,8 +21,6 @@ pub struct CameraFrame {
     near: f64,
     /// Do rays start at the eye, and not on the image plane?
     from_eye: bool,
-    /// How far from its point of the grid a sample of a pixel may be, in pixels.
-    spread: f64,
 }
 
 impl CameraFrame {
@@ -27,18 +28,12 @@ impl CameraFrame {
     pub fn new(camera: &Camera, render: &Render) -> Self {
         let (axes, bounds) = (camera.axes().unwrap_or_default(), camera.window(render.size));
         let from_eye = render.integrator.starts_at_eye();
-        let spread = if render.spp > 1 { 0.5 } else { 0.0 };
-        Self { eye: camera.eye.into(), axes, bounds, size: render.size, near: camera.image_plane(), from_eye, spread }
+        Self { eye: camera.eye.into(), axes, bounds, size: render.size, near: camera.image_plane(), from_eye }
     }
 
     /// Origin and direction of the ray through a pixel, (0, 0) on top left.
     pub fn ray(&self, x: u32, y: u32) -> (Vec3, Vec3) {
         self.rays(self.across(x.into()), self.up(y.into()))
-    }
-
-    /// How far from its point of the grid a sample of a pixel may be, in pixels.
-    pub(crate) fn spread(&self) -> f64 {
-        self.spread
     }
 
     /// Where the image plane is, along the axis that points backwards.
@@ -76,7 +71,7 @@ impl CameraFrame {
 
     /// All places where camera rays start.
     pub(crate) fn starts(&self) -> Bounds {
-        if self.from_eye { Bounds::of([self.eye]) } else { Bounds::of(self.outermost()) }
+        if self.from_eye { Bounds::of([self.eye]) } else { Bounds::of(self.outermost(JITTER)) }
     }
 
     /// Is the image plane where `near` puts it, to three digits, in spite of rounding? Very near to the eye, or with the eye very
@@ -91,13 +86,13 @@ impl CameraFrame {
         self.corners_of(self.bounds)
     }
 
-    /// The corners of all that samples look through.
-    pub(crate) fn outermost(&self) -> [Vec3; 4] {
+    /// The corners of all that samples look through which are up to so many pixels from their points of the grid.
+    pub(crate) fn outermost(&self, jitter: f64) -> [Vec3; 4] {
         let [mut left, mut right, mut bottom, mut top] = self.bounds;
-        if self.spread > 0.0 {
-            let [last_column, last_row] = self.size.map(|n| f64::from(n - 1) + self.spread);
-            [left, right] = [self.across(-self.spread), self.across(last_column)];
-            [top, bottom] = [self.up(-self.spread), self.up(last_row)];
+        if jitter > 0.0 {
+            let [last_column, last_row] = self.size.map(|n| f64::from(n - 1) + jitter);
+            [left, right] = [self.across(-jitter), self.across(last_column)];
+            [top, bottom] = [self.up(-jitter), self.up(last_row)];
         }
         self.corners_of([left, right, bottom, top])
     }

@@ -17,7 +17,7 @@ impl World {
     ///
     /// Looks at the box of each triangle.
     pub(super) fn find_lights_on_surfaces(&mut self, scene: &Scene, parts: &Parts) {
-        if self.render.shadows() == Shadows::Off {
+        if scene.render.shadows() == Shadows::Off {
             return;
         }
         let lamps = self.lights.iter().enumerate().filter(|(_, light)| !light.at_infinity);

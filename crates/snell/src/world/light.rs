@@ -57,7 +57,7 @@ impl LightSource {
 impl Spot {
     /// The share of the light that goes against `wi`, which points towards it: 1 in the middle, 0 outside, and smooth between.
     #[inline(always)]
-    pub fn share<L: Lanes>(&self, wi: Vec3<L>) -> L {
+    pub fn falloff<L: Lanes>(&self, wi: Vec3<L>) -> L {
         let (zero, one) = (L::splat(0.0), L::splat(1.0));
         let cos = -self.axis.splat().dot(wi);
         let s = (cos - L::splat(self.cos_end)) / L::splat(self.cos_full - self.cos_end);
@@ -85,7 +85,7 @@ mod tests {
         };
         let share = |edge: Option<f64>, degrees: f64| {
             let (sin, cos) = sin_cos_degrees(degrees);
-            LightSource::new(&light(edge)).spot.map(|spot| spot.share::<f64>(Vec3::new(sin, cos, 0.0)))
+            LightSource::new(&light(edge)).spot.map(|spot| spot.falloff::<f64>(Vec3::new(sin, cos, 0.0)))
         };
         assert_eq!(share(None, 59.9), Some(1.0));
         assert_eq!(share(None, 60.1), Some(0.0));

@@ -21,14 +21,21 @@ pub(super) struct Triangles {
 pub(super) type Which = (&'static str, usize);
 
 /// All that trees are to be built of.
-#[derive(Default)]
 pub(super) struct Parts {
+    /// The model of light that the scene asks for.
+    pub integrator: Integrator,
     pub triangles: Triangles,
     pub models: Vec<Triangles>,
     /// The meshes to be placed, when all ids before them are known: shape of the scene, name, model, map.
     pub placed: Vec<(Which, String, usize, Affine)>,
     /// The solids of each model.
     pub solids: Vec<Vec<Solid>>,
+}
+
+impl Parts {
+    pub fn of(integrator: Integrator) -> Self {
+        Self { integrator, triangles: Triangles::default(), models: Vec::new(), placed: Vec::new(), solids: Vec::new() }
+    }
 }
 
 /// The numbers of materials, by their names.
@@ -59,11 +66,8 @@ impl Sides {
 }
 
 /// The course's pictures are made with the plain mean.
-fn normal_weights(integrator: Integrator) -> NormalWeights {
-    match integrator {
-        Integrator::Whitted => NormalWeights::Angle,
-        Integrator::Lecture | Integrator::Course2018 | Integrator::Course2020 => NormalWeights::Equal,
-    }
+fn normal_weights(has_media: bool) -> NormalWeights {
+    if has_media { NormalWeights::Angle } else { NormalWeights::Equal }
 }
 
 impl World {
@@ -121,7 +125,7 @@ impl World {
             let help = "give it a material without texture, or a model file with texture coordinates".to_owned();
             return Err(refused((format!("`{name}` has no texture coordinates for its texture"), help)));
         }
-        let weights = normal_weights(self.render.integrator);
+        let weights = normal_weights(self.has_media);
         let corner_normals = (mesh.smooth_angle > 0.0).then(|| placed.smooth_normals(mesh.smooth_angle, weights));
         let is_model = !mesh.instances.is_empty();
         let (surfaces, triangles) = if is_model {
@@ -176,7 +180,7 @@ impl World {
             let count = self.surfaces.material_of.len() as u32 - first;
             self.objects.push(Object { name: name.clone(), first, count });
         }
-        self.warn_about(&name, &place(main_key), &placed, mesh, without_area, &used);
+        self.warn_about(&name, &place(main_key), &placed, mesh, without_area, &used, parts.integrator);
         Ok(())
     }
 
@@ -194,7 +198,7 @@ impl World {
         let materials = (0..placed.faces.len()).map(|f| material_of(f, &placed));
         let mut media = materials.filter(|&m| self.refracts(m)).map(|m| self.medium_of(m));
         let Some(medium) = media.next() else {
-            if mesh.inside.is_some() && self.render.integrator == Integrator::Whitted {
+            if mesh.inside.is_some() && self.has_media {
                 let message = format!("`{name}` has media on both sides, but light does not go through its material");
                 return Err((
                     message,
@@ -291,6 +295,7 @@ impl World {
         number as u32
     }
 
+    #[allow(clippy::too_many_arguments, reason = "all that is known of a mesh, and nobody else wants it together")]
     fn warn_about(
         &mut self,
         name: &str,
@@ -299,6 +304,7 @@ impl World {
         mesh: &Mesh,
         without_area: usize,
         used: &[bool],
+        integrator: Integrator,
     ) {
         let mut warn = |code, message| self.warnings.push(Warning { code, place: place.to_vec(), message });
         if without_area > 0 {
@@ -314,7 +320,7 @@ impl World {
             }
         }
         let transparent = self.materials.iter().zip(used).any(|(m, &used)| used && m.is_transparent());
-        let refracts_spheres = matches!(self.render.integrator, Integrator::Lecture | Integrator::Course2020);
+        let refracts_spheres = matches!(integrator, Integrator::Lecture | Integrator::Course2020);
         if transparent && refracts_spheres {
             let message = format!(
                 "`{name}` has a transparent material, but this integrator refracts only in spheres: \

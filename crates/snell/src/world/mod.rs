@@ -12,6 +12,7 @@ mod texture;
 mod tree;
 
 pub use camera::CameraFrame;
+pub(crate) use camera::JITTER;
 pub(crate) use light::LightSource;
 use mesh::{MaterialIds, Parts};
 pub(crate) use solid::{Medium, NO_SOLID, Solid};
@@ -24,7 +25,7 @@ use crate::film::Rgb;
 use crate::geometry::bvh::{Bvh, Quality, TreeStatistics};
 use crate::geometry::{Affine, Bounds, Sphere};
 use crate::optics::spectrum::Band;
-use crate::scene::{Integrator, Material, Mesh, Problem, Render, Scene, Step, Warning, validate};
+use crate::scene::{Integrator, Material, Mesh, Problem, Scene, Step, Warning, validate};
 
 /// An object of the scene: the primitives `first .. first + count`.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,14 +44,14 @@ pub struct Object {
 /// number is hit.
 #[derive(Clone, Debug)]
 pub struct World {
-    /// The settings of the scene.
-    pub render: Render,
     /// The camera, placed.
     pub camera: CameraFrame,
     /// Objects in the order of their primitives.
     pub objects: Vec<Object>,
     /// What is probably not meant.
     pub warnings: Vec<Warning>,
+    /// Is it compiled for models of light that follow rays through solids, from medium to medium?
+    pub(crate) has_media: bool,
     pub(crate) ambient: Rgb,
     pub(crate) eta_outside: f64,
     pub(crate) lights: Vec<LightSource>,
@@ -108,7 +109,7 @@ impl World {
     pub fn build(scene: &Scene, quality: Quality, threads: usize) -> Result<Self, Vec<Problem>> {
         let warnings = validate(scene)?;
         let mut world = Self {
-            render: scene.render.clone(),
+            has_media: scene.render.integrator.has_media(),
             camera: CameraFrame::new(&scene.camera, &scene.render),
             objects: Vec::new(),
             warnings,
@@ -145,7 +146,7 @@ impl World {
             // Where nothing is, nobody asks what it is made of; but rows of the background are rows like others.
             world.materials.push(Material::default());
         }
-        world.find_indices();
+        world.find_indices(scene.render.bands);
         let material_ids: MaterialIds<'_> =
             scene.materials.keys().enumerate().map(|(i, name)| (name.as_str(), i as u32)).collect();
         world.find_patterns(scene)?;
@@ -154,7 +155,7 @@ impl World {
             world.add_sphere(i, sphere, &material_ids).map_err(|problem| vec![problem])?;
         }
         world.surfaces.corner_normals_of.resize(world.spheres.len(), FLAT);
-        let mut parts = Parts::default();
+        let mut parts = Parts::of(scene.render.integrator);
         let mut add = |kind, i, mesh: &Mesh| {
             world.add_mesh((kind, i), mesh, &material_ids, &mut parts).map_err(|problem| vec![problem])
         };
@@ -170,8 +171,13 @@ impl World {
         }
         world.build_tree(&parts, quality, threads).map_err(|problem| vec![problem])?;
         world.find_lights_on_surfaces(scene, &parts);
-        world.warnings.extend(world.before_image_plane());
+        world.warnings.extend(world.before_image_plane(scene.render.spp));
         Ok(world)
+    }
+
+    /// Can it be rendered with this model of light? Worlds of models with media hold solids and what is in them, others do not.
+    pub fn is_for(&self, integrator: Integrator) -> bool {
+        self.has_media == integrator.has_media()
     }
 
     /// The same world without a tree: every ray is tested against every primitive. Slow, and the oracle of the tests.
@@ -184,7 +190,7 @@ impl World {
     /// Is there real optics, and is this material the surface of what light goes through? Thin panes have no inside.
     fn refracts(&self, material: u32) -> bool {
         let material = &self.materials[material as usize];
-        self.render.integrator == Integrator::Whitted && material.is_transparent() && material.thickness.is_none()
+        self.has_media && material.is_transparent() && material.thickness.is_none()
     }
 
     /// Takes the thickness from materials that let no light through: what has one is a pane.

@@ -1,6 +1,7 @@
 //! What stands between the eye and the image plane. In the models of the lecture and the course rays start on the plane, so
 //! that nothing of it is seen, and what reaches through the plane is cut open.
 
+use super::camera::JITTER;
 use super::{CameraFrame, World};
 use crate::geometry::{Sphere, Vec3};
 use crate::scene::{Step, Warning, WarningCode};
@@ -10,11 +11,11 @@ const NAMED: usize = 3;
 
 impl World {
     /// W009, if rays start on the image plane and pass over something.
-    pub(super) fn before_image_plane(&self) -> Option<Warning> {
+    pub(super) fn before_image_plane(&self, spp: u32) -> Option<Warning> {
         if self.camera.starts_at_eye() {
             return None;
         }
-        let skipped = Pyramid::of(&self.camera);
+        let skipped = Pyramid::of(&self.camera, if spp > 1 { JITTER } else { 0.0 });
         let mut names: Vec<&str> = Vec::new();
         for object in self.objects.iter().filter(|object| object.count > 0) {
             let first = object.first as usize;
@@ -56,8 +57,8 @@ struct Pyramid {
 const AROUND: [[usize; 2]; 4] = [[0, 1], [1, 3], [3, 2], [2, 0]];
 
 impl Pyramid {
-    fn of(camera: &CameraFrame) -> Self {
-        let corners = camera.outermost().map(|corner| corner - camera.eye);
+    fn of(camera: &CameraFrame, jitter: f64) -> Self {
+        let corners = camera.outermost(jitter).map(|corner| corner - camera.eye);
         let middle = corners[0] + corners[3];
         let side = |[a, b]: [usize; 2]| {
             let normal = corners[a].cross(corners[b]).unit();
@@ -164,7 +165,7 @@ mod tests {
             scale in prop_oneof![Just(1e-9), Just(1.0), Just(1e9)],
         ) {
             let frame = frame(scale);
-            let pyramid = Pyramid::of(&frame);
+            let pyramid = Pyramid::of(&frame, 0.0);
             let at = |p: [f64; 3]| Vec3::from(p) * scale + Vec3::new(1.0, 2.0, 6.0) * scale;
             let hit = |center: Vec3, radius: f64| met(&frame, |eye, dir| {
                 let (t, meets) = sphere::intersect(eye, dir, center, radius);
@@ -196,7 +197,7 @@ mod tests {
     fn what_stands_behind_or_beside_is_left_alone() {
         for scale in [1e-9, 1.0, 1e9] {
             let frame = frame(scale);
-            let (pyramid, [_, right, back]) = (Pyramid::of(&frame), [frame.axes[1], frame.axes[0], frame.axes[2]]);
+            let (pyramid, [_, right, back]) = (Pyramid::of(&frame, 0.0), [frame.axes[1], frame.axes[0], frame.axes[2]]);
             let plane = frame.eye - back * (4.0 * scale);
             let ball = |center: Vec3, radius: f64| pyramid.meets_sphere(&Sphere { center, radius: radius * scale });
             assert!(!ball(plane - back * (2.0 * scale), 2.0), "touches the plane from behind");

@@ -7,7 +7,6 @@ use crate::geometry::solid::{Component, EdgePlace, Found, Orientation, Report, V
 use crate::geometry::{Affine, Bounds, TriangleMesh, Vec3, triangle};
 use crate::optics::dispersion::LINE_D_NM;
 use crate::optics::spectrum;
-use crate::scene::Integrator;
 
 /// "No solid", where the number of one is expected: a primitive that lets no light through.
 pub(crate) const NO_SOLID: u32 = u32::MAX;
@@ -160,9 +159,9 @@ impl World {
     }
 
     /// Works out the indices of all materials: of the d line, and of the bands of real optics.
-    pub(super) fn find_indices(&mut self) {
-        if self.render.integrator == Integrator::Whitted && self.render.bands > 1 {
-            self.bands = spectrum::bands(self.render.bands as usize);
+    pub(super) fn find_indices(&mut self, bands: u32) {
+        if self.has_media && bands > 1 {
+            self.bands = spectrum::bands(bands as usize);
         }
         for material in &mut self.materials {
             // Validation has seen to it that there are indices.

@@ -116,15 +116,15 @@ impl World {
         material.dyed || (shines && self.coverage(primitive, point) > 0.0)
     }
 
-    /// Does no light at all go through, by the kind of shadows that the scene has?
-    pub(crate) fn blocks_light(&self, primitive: u32) -> bool {
+    /// Does no light at all go through, with this kind of shadows?
+    pub(crate) fn blocks_light(&self, primitive: u32, shadows: Shadows) -> bool {
         let primitive = primitive as usize;
-        self.render.shadows() != Shadows::Tinted || (self.solid_of(primitive) == NO_SOLID && !self.is_thin(primitive))
+        shadows != Shadows::Tinted || (self.solid_of(primitive) == NO_SOLID && !self.is_thin(primitive))
     }
 
     /// The same at one of its points: what has holes may be whole there.
-    pub(crate) fn blocks_light_at(&self, primitive: u32, point: Vec3) -> bool {
-        self.render.shadows() != Shadows::Tinted || self.is_opaque_at(primitive as usize, point)
+    pub(crate) fn blocks_light_at(&self, primitive: u32, point: Vec3, shadows: Shadows) -> bool {
+        shadows != Shadows::Tinted || self.is_opaque_at(primitive as usize, point)
     }
 
     /// Is it a surface of no solid, and lets nothing through at this point?

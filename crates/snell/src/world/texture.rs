@@ -3,7 +3,7 @@
 use super::World;
 use crate::film::Rgb;
 use crate::geometry::{Affine, Vec3};
-use crate::scene::{Integrator, Material, Problem, Scene, Sky, Step, Texture};
+use crate::scene::{Material, Problem, Scene, Sky, Step, Texture};
 use crate::texture::{Image, barycentric, checker, latlong_uv, sphere_uv};
 use std::sync::Arc;
 
@@ -24,10 +24,10 @@ enum Colors {
 
 impl Pattern {
     /// `None` where the picture has not been read. Alpha is drawn by real optics only.
-    pub fn new(texture: &Texture, integrator: Integrator) -> Option<Self> {
+    pub fn new(texture: &Texture, has_media: bool) -> Option<Self> {
         let image = || {
             let image = texture.pixels.clone()?;
-            let has_alpha = image.alpha().is_some() && integrator == Integrator::Whitted;
+            let has_alpha = image.alpha().is_some() && has_media;
             Some(if has_alpha { Colors::WithAlpha(image) } else { Colors::Image(image) })
         };
         let colors = texture.checker.map(Colors::Checker).or_else(image)?;
@@ -131,7 +131,7 @@ impl World {
                 let place = ["texture", name, "image"].map(Step::from).to_vec();
                 vec![Problem { place, message: "this picture has not been read".to_owned(), help: None }]
             };
-            self.patterns.push(Pattern::new(texture, scene.render.integrator).ok_or_else(unread)?);
+            self.patterns.push(Pattern::new(texture, self.has_media).ok_or_else(unread)?);
         }
         let of = |m: &Material| m.texture.as_ref().and_then(|name| scene.textures.get_index_of(name));
         self.pattern_of = self.materials.iter().map(|m| of(m).map(|at| at as u32)).collect();

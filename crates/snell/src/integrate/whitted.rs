@@ -16,31 +16,101 @@
 //! At its first dispersive interface a white ray splits: a refracted ray for each band of light, with the band's index and its
 //! share of white. What is reflected goes one way for all, with `R` = Σ share·R of the bands, and stays white.
 
-use super::hits::Batch;
-use super::leaving::{back, through, until_clear};
-use super::media::{Media, WHITE};
-use super::pane::{Pane, Passage};
-use super::queue::{Load, RayKind, RayQueue, Rays, Weight};
+use super::{Integrator, Most, size};
 use crate::film::Rgb;
 use crate::geometry::Vec3;
-use crate::lanes::{Lanes, Mask};
+use crate::lanes::{Lanes, Mask, index, record};
 use crate::optics::fresnel::fresnel_dielectric;
 use crate::optics::snell::{reflect, refract};
 use crate::scene::Material;
-use crate::world::Background;
+use crate::trace::interfaces::{InterfaceState, Interfaces, Travel, media_of, mirrored, onward, through_holes};
+use crate::trace::media::{Media, WHITE};
+use crate::trace::pane::{Pane, Passage};
+use crate::trace::{Batch, Children, RayKind, Settings};
+use crate::world::{Background, World};
 
-/// Rays in lanes, and which of them leave.
-type Leaving<L> = (<L as Lanes>::Mask, Rays<L>);
+record! {
+    /// What a ray carries.
+    Carried,
+    /// Its columns.
+    CarriedColumns {
+        /// What can be added to the pixel for each unit of radiance.
+        throughput: Rgb,
+    }
+}
 
-/// Which hits show their own colour, and so have to ask for lights: outer sides that are not wholly transparent.
-#[inline(always)]
-pub(crate) fn has_local_color<L: Lanes>(hits: &Batch<'_, L>) -> L::Mask {
-    hits.active & hits.face().outer.gt(L::splat(0.0)) & opacity(hits).not_black()
+/// Real optics: Fresnel, total reflection, the inside of solids, absorption.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Whitted {
+    /// Rays that carry less than this part of what they could are not followed.
+    min_throughput: f64,
+}
+
+impl Integrator for Whitted {
+    type Propagation = Interfaces;
+    type Carried = CarriedColumns;
+
+    fn new(settings: &Settings) -> Self {
+        Self { min_throughput: settings.min_throughput }
+    }
+
+    #[inline(always)]
+    fn from_camera<L: Lanes>() -> Carried<L> {
+        Carried { throughput: Rgb::gray(1.0).splat() }
+    }
+
+    #[inline(always)]
+    fn throughput<L: Lanes>(carried: &Carried<L>) -> Rgb<L> {
+        carried.throughput
+    }
+
+    #[inline(always)]
+    fn arriving<L: Lanes>(hits: &Batch<'_, L, Interfaces>) -> Rgb<L> {
+        hits.carried::<CarriedColumns>().throughput * hits.face().transmittance
+    }
+
+    #[inline(always)]
+    fn asks_for_light<L: Lanes>(hits: &Batch<'_, L, Interfaces>) -> L::Mask {
+        hits.active & hits.face().outer.gt(L::splat(0.0)) & opacity(hits).not_black()
+    }
+
+    #[inline(always)]
+    fn scatter<L: Lanes>(
+        self,
+        hits: &Batch<'_, L, Interfaces>,
+        state: &InterfaceState<'_>,
+        children: &mut Children<Interfaces>,
+    ) -> Rgb<L> {
+        scatter(hits, &state.media, children)
+    }
+
+    fn ends_early(self) -> bool {
+        self.min_throughput > 0.0
+    }
+
+    fn carries_too_little(self, world: &World, carried: &Carried<f64>, travel: &Travel<f64>) -> bool {
+        self.ends_early() && part_carried(world, carried.throughput, index(travel.band) as u32) < self.min_throughput
+    }
+
+    fn most(material: &Material, brightest: Rgb) -> Most {
+        let (ko, kr, clear) = (size(material.ko), size(material.kr), size(Rgb::gray(1.0) - material.ko));
+        let dye = size(material.kd) * brightest;
+        let dye = if material.dyed { Rgb::new(dye.r.max(1.0), dye.g.max(1.0), dye.b.max(1.0)) } else { Rgb::gray(1.0) };
+        Most { local: ko, children: ko * kr + clear * dye }
+    }
+}
+
+/// What a ray carries of what one of its band of light could, in the channel where that is most. A band is a small share of
+/// white, of some channels next to none, and of any channel perhaps a negative one.
+fn part_carried(world: &World, throughput: Rgb, band: u32) -> f64 {
+    let whole = if band == WHITE { Rgb::gray(1.0) } else { world.bands[band as usize].weight };
+    let parts = throughput.to_array().into_iter().zip(whole.to_array());
+    parts.map(|(carried, whole)| if whole == 0.0 { 0.0 } else { (carried / whole).abs() }).fold(0.0, f64::max)
 }
 
 /// What of the light on the outer side does not go through.
 #[inline(always)]
-fn opacity<L: Lanes>(hits: &Batch<'_, L>) -> Rgb<L> {
+fn opacity<L: Lanes>(hits: &Batch<'_, L, Interfaces>) -> Rgb<L> {
     let face = hits.face();
     let ko = hits.material_color(
         #[inline(always)]
@@ -53,7 +123,7 @@ fn opacity<L: Lanes>(hits: &Batch<'_, L>) -> Rgb<L> {
 
 /// Which hits are on opaque surfaces that are only partly there?
 #[inline(always)]
-fn is_cut_out<L: Lanes>(hits: &Batch<'_, L>) -> L::Mask {
+fn is_cut_out<L: Lanes>(hits: &Batch<'_, L, Interfaces>) -> L::Mask {
     let face = hits.face();
     let partly = hits.active & hits.coverage().lt(L::splat(1.0)) & face.before.eq(face.after);
     if partly.any() { partly & !is_pane(hits) } else { partly }
@@ -61,7 +131,7 @@ fn is_cut_out<L: Lanes>(hits: &Batch<'_, L>) -> L::Mask {
 
 /// Which hits are on thin faces, whole panes?
 #[inline(always)]
-fn is_pane<L: Lanes>(hits: &Batch<'_, L>) -> L::Mask {
+fn is_pane<L: Lanes>(hits: &Batch<'_, L, Interfaces>) -> L::Mask {
     let face = hits.face();
     if !(face.before.eq(face.after) & hits.active).any() {
         return L::Mask::from_bits(0);
@@ -75,13 +145,13 @@ fn is_pane<L: Lanes>(hits: &Batch<'_, L>) -> L::Mask {
 
 /// What the panes do, and from where rays go on behind them.
 #[inline(always)]
-fn through_panes<L: Lanes>(hits: &Batch<'_, L>, media: &Media<'_>) -> (Passage<L>, Vec3<L>) {
+fn through_panes<L: Lanes>(hits: &Batch<'_, L, Interfaces>, media: &Media<'_>) -> (Passage<L>, Vec3<L>) {
     let (wo, n, ng) = (hits.wo(), hits.normal(), hits.geometric_normal());
     let n = Vec3::select(wo.dot(n).gt(L::splat(0.0)), n, ng);
     let eta = L::from_fn(
         #[inline(always)]
         |lane| {
-            let [before, _, band] = hits.media_of(lane);
+            let [before, _, band] = media_of(hits, lane);
             let own = hits.world.eta_of(hits.material_number(lane), (band != WHITE).then_some(band));
             own / media.eta(before, band)
         },
@@ -98,7 +168,7 @@ fn through_panes<L: Lanes>(hits: &Batch<'_, L>, media: &Media<'_>) -> (Passage<L
 
 /// What is seen where nothing is.
 #[inline(always)]
-fn background<L: Lanes>(hits: &Batch<'_, L>) -> Rgb<L> {
+fn background<L: Lanes>(hits: &Batch<'_, L, Interfaces>) -> Rgb<L> {
     match &hits.world.background {
         Background::Color(color) => color.splat(),
         sky => {
@@ -111,16 +181,15 @@ fn background<L: Lanes>(hits: &Batch<'_, L>) -> Rgb<L> {
     }
 }
 
-/// What a batch of hits adds, and the mirror and refracted rays that leave. White rays that meet dispersion split: their
-/// refracted rays go to the queues of their bands.
+/// What a batch of hits adds, and the mirror and refracted rays that leave. White rays that meet dispersion split into rays of bands.
 #[inline(always)]
-pub(crate) fn answer<L: Lanes>(
-    hits: &Batch<'_, L>,
+fn scatter<L: Lanes>(
+    hits: &Batch<'_, L, Interfaces>,
     media: &Media<'_>,
-    bands: &mut [RayQueue],
-) -> (Rgb<L>, Leaving<L>, Leaving<L>) {
+    children: &mut Children<Interfaces>,
+) -> Rgb<L> {
     let (zero, white, none) = (L::splat(0.0), Rgb::gray(1.0).splat::<L>(), Rgb::black());
-    let (face, throughput) = (hits.face(), hits.weight().throughput());
+    let (face, throughput) = (hits.face(), Whitted::arriving(hits));
     let outer = face.outer.gt(zero);
     let ko = Rgb::select(outer, opacity(hits), none);
     let kr = hits.material_color(
@@ -146,64 +215,58 @@ pub(crate) fn answer<L: Lanes>(
     let to = Directions::new(hits, relative_index(hits, media, None));
     let mut reflectance = Rgb::new(to.reflectance, to.reflectance, to.reflectance);
     let goes_through = !face.before.eq(face.after);
-    let splits = if bands.is_empty() { L::Mask::from_bits(0) } else { splitting(hits, media) };
+    let splits = if children.bands() == 0 { L::Mask::from_bits(0) } else { splitting(hits, media) };
     if splits.any() {
         let mut reflected = none;
-        for (number, queue) in bands.iter_mut().enumerate() {
+        for number in 0..children.bands() {
             let share = hits.world.bands[number].weight.splat::<L>();
             let to = Directions::new(hits, relative_index(hits, media, Some(number as u32)));
             let r = Rgb::new(to.reflectance, to.reflectance, to.reflectance);
             reflected = reflected + share * r;
-            let weight = throughput * (clear * dye) * (share * (white - r));
-            let (sends, rays) = child(hits, to.refracted, face.after, L::splat(number as f64), weight);
-            queue.push(RayKind::Refracted, sends & splits & to.refracts, &rays);
+            let throughput = throughput * (clear * dye) * (share * (white - r));
+            let travel = onward(hits, to.refracted, face.after, L::splat(number as f64));
+            let ray = hits.leaving(hits.point(), to.refracted, travel);
+            let sends = hits.active & throughput.not_black() & splits & to.refracts;
+            children.push_band::<L, CarriedColumns>(number, sends, &ray, &Carried { throughput });
         }
         reflectance = Rgb::select(splits, reflected, reflectance);
     }
-    let (band, mut goes_on, mut transmittance) = (hits.band(), to.refracts & goes_through, white - reflectance);
-    let (mut origin, mut onward) = (hits.point(), to.refracted);
+    let (band, mut goes_on, mut transmittance) = (face.band, to.refracts & goes_through, white - reflectance);
+    let (mut origin, mut dir) = (hits.point(), to.refracted);
     let panes = is_pane(hits);
     if panes.any() {
         let (passage, behind) = through_panes(hits, media);
         reflectance = Rgb::select(panes, passage.reflectance, reflectance);
         transmittance = Rgb::select(panes, passage.transmittance, transmittance);
-        (origin, onward) = (Vec3::select(panes, behind, origin), Vec3::select(panes, -hits.wo(), onward));
+        (origin, dir) = (Vec3::select(panes, behind, origin), Vec3::select(panes, -hits.wo(), dir));
         goes_on = goes_on | panes;
     }
     if cut_out.any() {
         reflectance = Rgb::select(cut_out, none, reflectance);
         transmittance = Rgb::select(cut_out, white, transmittance);
-        onward = Vec3::select(cut_out, -hits.wo(), onward);
+        dir = Vec3::select(cut_out, -hits.wo(), dir);
         goes_on = goes_on | cut_out;
     }
-    let mut mirror = child(hits, to.mirror, face.before, band, throughput * (ko * kr + clear * reflectance));
-    mirror.1.load.back = hits.wo() * back(hits.world, hits.t());
-    let refracted_weight = throughput * (clear * dye) * transmittance;
-    let (sends, mut refracted) = child(hits, onward, face.after, band, refracted_weight);
+    let weight = throughput * (ko * kr + clear * reflectance);
+    let mirror = hits.leaving(hits.point(), to.mirror, mirrored(hits, to.mirror, face.before, band));
+    let sends = hits.active & weight.not_black();
+    children.push::<L, CarriedColumns>(RayKind::Mirror, sends, &mirror, &Carried { throughput: weight });
+    let weight = throughput * (clear * dye) * transmittance;
+    let mut travel = onward(hits, dir, face.after, band);
     if cut_out.any() {
-        let [back, clear] = through(hits.world, hits.geometric_normal().dot(onward), hits.t());
-        refracted.load.back = Vec3::select(cut_out, hits.wo() * back, refracted.load.back);
-        refracted.load.t_min = L::select(cut_out, clear, refracted.load.t_min);
+        travel = through_holes(hits, cut_out, dir, travel);
     }
-    (contribution, mirror, (sends & goes_on & !splits, Rays { origin, ..refracted }))
-}
-
-/// A ray that leaves from each hit, and where it carries anything.
-#[inline(always)]
-fn child<L: Lanes>(hits: &Batch<'_, L>, dir: Vec3<L>, medium: L, band: L, attenuation: Rgb<L>) -> Leaving<L> {
-    let (source, parent, pixel) = (hits.primitive(), hits.ray(), hits.pixel());
-    let weight = Weight { attenuation, factor: Rgb::gray(1.0).splat() };
-    let t_min = until_clear(hits.world, hits.geometric_normal().dot(dir));
-    let back = Vec3::default().splat();
-    let load = Load { weight, t_min, source, parent, pixel, medium, band, back };
-    (hits.active & attenuation.not_black(), Rays { origin: hits.point(), dir, load })
+    let refracted = hits.leaving(origin, dir, travel);
+    let sends = hits.active & weight.not_black() & goes_on & !splits;
+    children.push::<L, CarriedColumns>(RayKind::Refracted, sends, &refracted, &Carried { throughput: weight });
+    contribution
 }
 
 /// `eta_t / eta_i`, for the band of each ray, or for one that white rays split into.
 #[inline(always)]
-fn relative_index<L: Lanes>(hits: &Batch<'_, L>, media: &Media<'_>, of: Option<u32>) -> L {
+fn relative_index<L: Lanes>(hits: &Batch<'_, L, Interfaces>, media: &Media<'_>, of: Option<u32>) -> L {
     L::from_fn(|lane| {
-        let [before, after, band] = hits.media_of(lane);
+        let [before, after, band] = media_of(hits, lane);
         let band = of.unwrap_or(band);
         media.eta(after, band) / media.eta(before, band)
     })
@@ -211,9 +274,9 @@ fn relative_index<L: Lanes>(hits: &Batch<'_, L>, media: &Media<'_>, of: Option<u
 
 /// Which rays are white and meet dispersion?
 #[inline(always)]
-fn splitting<L: Lanes>(hits: &Batch<'_, L>, media: &Media<'_>) -> L::Mask {
+fn splitting<L: Lanes>(hits: &Batch<'_, L, Interfaces>, media: &Media<'_>) -> L::Mask {
     let bits = (0..L::WIDTH).map(|lane| {
-        let [before, after, band] = hits.media_of(lane);
+        let [before, after, band] = media_of(hits, lane);
         u32::from(band == WHITE && media.splits(before, after)) << lane
     });
     hits.active & L::Mask::from_bits(bits.sum())
@@ -232,7 +295,7 @@ struct Directions<L: Lanes> {
 impl<L: Lanes> Directions<L> {
     /// By the shading normal, which gives way where it would send rays to the wrong side of the face.
     #[inline(always)]
-    fn new(hits: &Batch<'_, L>, eta: L) -> Self {
+    fn new(hits: &Batch<'_, L, Interfaces>, eta: L) -> Self {
         let (wo, n, ng, zero) = (hits.wo(), hits.normal(), hits.geometric_normal(), L::splat(0.0));
         let (shading, flat) = (Self::by(wo, n, eta), Self::by(wo, ng, eta));
         let right = wo.dot(n).gt(zero)

@@ -1,0 +1,519 @@
+//! A render that goes on step by step.
+
+use super::accumulator::Accumulator;
+use super::spread::Spread;
+use super::{Options, Passes, Progress, RenderError};
+use crate::film::{Crop, Film, Rgb};
+use crate::integrate::{Integrator, WithIntegrator, with_integrator};
+use crate::lanes::{Kernel, Lanes, dispatch};
+use crate::threads;
+use crate::trace::{Block, Settings, Statistics, Tile, TracedTile, Tracer, mean};
+use crate::world::World;
+use std::collections::VecDeque;
+use std::ops::Range;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// A render that goes on step by step, and may be paused or dropped between any two of them.
+///
+/// ```
+/// # use snell::scene::{Camera, Integrator, Render, Scene};
+/// # let camera = Camera::new([0.0, 0.0, 10.0], [0.0; 3], [0.0, 1.0, 0.0], [-1.0, 1.0, -1.0, 1.0], -5.0);
+/// # let scene = Scene::new(Render::new(Integrator::Lecture, [64, 64]), camera);
+/// use snell::render::{Options, Passes, Renderer, Settings};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let world = snell::world::World::new(&scene).map_err(|problems| problems[0].to_string())?;
+/// let options = Options { passes: Passes::CoarseToFine { coarsest: 8 }, ..Options::default() };
+/// let mut renderer = Renderer::new(&world, &Settings::of(scene), &options)?;
+/// while !renderer.is_finished() {
+///     // One tile, here on the caller's thread; `renderer.film()` may be shown after each.
+///     let changed = renderer.step(1);
+///     assert_eq!(changed.len(), 1);
+/// }
+/// assert!(renderer.film().is_finished());
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Debug)]
+pub struct Renderer<'a> {
+    film: Film,
+    schedule: Schedule<'a>,
+}
+
+impl<'a> Renderer<'a> {
+    /// Begins a render.
+    ///
+    /// # Errors
+    /// When the film does not fit into memory, the crop not into the picture, or the world not to the model of light.
+    pub fn new(world: &'a World, settings: &'a Settings, options: &Options<'a>) -> Result<Self, RenderError> {
+        let mut film = Film::new(world.camera.size, Crop { x: 0, y: 0, width: 0, height: 0 })?;
+        let schedule = Schedule::new(&mut film, world, settings, options)?;
+        Ok(Self { film, schedule })
+    }
+
+    /// Renders so many tiles more, or all that are left. Returns those that have changed in the film: with coarse tiles the squares
+    /// of [`Tile::step`] pixels around their pixels, too.
+    pub fn step(&mut self, tiles: u64) -> Vec<Tile> {
+        self.schedule.step(&mut self.film, tiles)
+    }
+
+    /// Is everything rendered?
+    pub fn is_finished(&self) -> bool {
+        self.schedule.is_finished()
+    }
+
+    /// The picture so far: pixels that are not finished are black, or like a neighbour of a coarser pass.
+    pub fn film(&self) -> &Film {
+        &self.film
+    }
+
+    /// What was traced for it.
+    pub fn statistics(&self) -> Statistics {
+        self.schedule.statistics()
+    }
+
+    /// The picture, and what was traced for it.
+    pub fn into_film(self) -> (Film, Statistics) {
+        let statistics = self.schedule.statistics();
+        (self.film, statistics)
+    }
+
+    /// The sums of the samples of all passes that are complete; `None` if all samples are rendered in one pass
+    /// ([`Options::samples`], [`Passes`]), which keeps no sums.
+    pub fn accumulator(&self) -> Option<&Accumulator> {
+        self.schedule.accumulator.as_ref()
+    }
+}
+
+/// What is still to be rendered into a film.
+#[derive(Debug)]
+pub(super) struct Schedule<'a> {
+    world: &'a World,
+    settings: &'a Settings,
+    options: Options<'a>,
+    crop: Crop,
+    /// The one that is under way comes first.
+    passes: VecDeque<Pass>,
+    /// How many tiles of it have been taken, and those that were taken and not finished.
+    taken: u64,
+    again: Vec<u64>,
+    /// Sums of the samples of this pass, and the light that it has lost, pixel by pixel; empty without accumulator.
+    planes: Vec<(Block, Vec<Rgb>)>,
+    lost: Vec<u64>,
+    /// What this pass has taken.
+    statistics: Statistics,
+    /// What passes before have added up to.
+    accumulator: Option<Accumulator>,
+    /// Samples and rays of all tiles so far.
+    samples: u64,
+    rays: u64,
+}
+
+/// Some samples of some pixels: of every `step`-th one from (`x`, `y`) of the crop on.
+#[derive(Clone, Debug)]
+struct Pass {
+    x: u32,
+    y: u32,
+    step: u32,
+    samples: Range<u32>,
+    /// Is it the last one of its samples?
+    completes: bool,
+}
+
+impl Pass {
+    /// How many pixels in a row, and how many rows.
+    fn pixels(&self, crop: &Crop) -> [u32; 2] {
+        let count = |start: u32, length: u32| length.saturating_sub(start).div_ceil(self.step);
+        [count(self.x, crop.width), count(self.y, crop.height)]
+    }
+
+    /// How many tiles in a row, and how many rows of them.
+    fn tiles(&self, crop: &Crop, tile_size: u32) -> [u64; 2] {
+        self.pixels(crop).map(|pixels| u64::from(pixels.div_ceil(tile_size)))
+    }
+
+    /// A tile, by its column and row.
+    fn tile(&self, crop: &Crop, tile_size: u32, [column, row]: [u64; 2]) -> Tile {
+        let [width, height] = self.pixels(crop);
+        let (left, top) = (column as u32 * tile_size, row as u32 * tile_size);
+        Tile {
+            x: crop.x + self.x + left * self.step,
+            y: crop.y + self.y + top * self.step,
+            step: self.step,
+            width: tile_size.min(width - left),
+            height: tile_size.min(height - top),
+        }
+    }
+}
+
+/// The passes over a picture, without those that have no pixels.
+fn passes(crop: &Crop, samples: Range<u32>, kind: Passes) -> VecDeque<Pass> {
+    let Passes::CoarseToFine { coarsest } = kind else {
+        return [Pass { x: 0, y: 0, step: 1, samples, completes: true }].into();
+    };
+    let mut passes = VecDeque::new();
+    let (mut first, mut count) = (samples.start, 1);
+    let mut step = coarsest.clamp(1, 1 << 16).next_power_of_two();
+    // The first sample from coarse to fine: every `step`-th pixel, then those between, each time twice as many in a row.
+    passes.push_back(Pass { x: 0, y: 0, step, samples: first..first + 1, completes: false });
+    while step > 1 {
+        let half = step / 2;
+        for [x, y] in [[half, 0], [0, half], [half, half]] {
+            passes.push_back(Pass { x, y, step, samples: first..first + 1, completes: false });
+        }
+        step = half;
+    }
+    passes.retain(|pass| !pass.pixels(crop).contains(&0));
+    if let Some(last) = passes.back_mut() {
+        last.completes = true;
+    }
+    // Then as many samples at a time as there are already, so that there are few sums to keep.
+    first += 1;
+    while first < samples.end {
+        let end = first.saturating_add(count).min(samples.end);
+        passes.push_back(Pass { x: 0, y: 0, step: 1, samples: first..end, completes: true });
+        (first, count) = (end, count.saturating_mul(2));
+    }
+    passes
+}
+
+impl<'a> Schedule<'a> {
+    /// Makes the film ready, and plans what to render into it.
+    pub fn new(
+        film: &mut Film,
+        world: &'a World,
+        settings: &'a Settings,
+        options: &Options<'a>,
+    ) -> Result<Self, RenderError> {
+        if !world.is_for(settings.integrator) {
+            return Err(RenderError::OtherModel { integrator: settings.integrator });
+        }
+        let size = world.camera.size;
+        let crop = options.crop.unwrap_or(Crop { x: 0, y: 0, width: size[0], height: size[1] });
+        let fits =
+            |start: u32, length: u32, limit: u32| length > 0 && start.checked_add(length).is_some_and(|e| e <= limit);
+        if !fits(crop.x, crop.width, size[0]) || !fits(crop.y, crop.height, size[1]) {
+            return Err(RenderError::CropOutside { crop, size });
+        }
+        let [first, end] = options.samples.unwrap_or([0, settings.spp]);
+        if first >= end || end > settings.spp {
+            return Err(RenderError::SamplesOutside { samples: [first, end], spp: settings.spp });
+        }
+        film.start_again(size, crop)?;
+        let passes = passes(&crop, first..end, options.passes);
+        let is_all = (first, end) == (0, settings.spp);
+        let in_one = is_all && passes.iter().filter(|pass| pass.completes).count() == 1;
+        let options = Options { tile_size: options.tile_size.clamp(1, 1 << 15), ..*options };
+        Ok(Self {
+            world,
+            settings,
+            options,
+            crop,
+            passes,
+            taken: 0,
+            again: Vec::new(),
+            planes: Vec::new(),
+            lost: Vec::new(),
+            statistics: Statistics::default(),
+            accumulator: (!in_one).then(|| Accumulator::new(size, crop)),
+            samples: 0,
+            rays: 0,
+        })
+    }
+
+    pub fn is_finished(&self) -> bool {
+        self.passes.is_empty()
+    }
+
+    /// Keeps the sums of all samples, though the picture could do without them.
+    pub fn keep_sums(&mut self) {
+        self.accumulator.get_or_insert_with(|| Accumulator::new(self.world.camera.size, self.crop));
+    }
+
+    /// The sums of all passes that are complete.
+    pub fn into_accumulator(self) -> Accumulator {
+        self.accumulator.unwrap_or_else(|| Accumulator::new(self.world.camera.size, self.crop))
+    }
+
+    pub fn statistics(&self) -> Statistics {
+        let mut all = self.accumulator.as_ref().map(Accumulator::statistics).unwrap_or_default();
+        all.merge(&self.statistics);
+        all
+    }
+
+    /// Samples of all pixels.
+    fn total(&self) -> u64 {
+        let [width, height] = [self.crop.width, self.crop.height].map(u64::from);
+        let [first, end] = self.options.samples.unwrap_or([0, self.settings.spp]);
+        width * height * u64::from(end - first)
+    }
+
+    /// Renders so many tiles more, or all that are left, and returns those that have changed.
+    pub fn step(&mut self, film: &mut Film, tiles: u64) -> Vec<Tile> {
+        let mut changed = Vec::new();
+        while (changed.len() as u64) < tiles && !self.is_finished() && !self.is_cancelled() {
+            let wanted = tiles - changed.len() as u64;
+            changed.append(&mut self.step_of_pass(film, wanted));
+        }
+        changed
+    }
+
+    fn is_cancelled(&self) -> bool {
+        self.options.cancel.is_some_and(|cancel| cancel.load(Ordering::Relaxed))
+    }
+
+    /// The same within the pass that is under way.
+    fn step_of_pass(&mut self, film: &mut Film, tiles: u64) -> Vec<Tile> {
+        let Some(pass) = self.passes.front().cloned() else { return Vec::new() };
+        let (count, size) = (self.crop.width as usize * self.crop.height as usize, self.options.tile_size);
+        let total = self.total();
+        if self.accumulator.is_some() && self.planes.is_empty() {
+            let blocks = Block::of(pass.samples.clone());
+            self.planes = blocks.into_iter().map(|block| (block, vec![Rgb::black(); count])).collect();
+            self.lost = vec![0; count];
+        }
+        let [columns, rows] = pass.tiles(&self.crop, size);
+        let order = Spread::new(columns * rows);
+        let left = order.count - self.taken;
+        let fresh = left.min(tiles.saturating_sub(self.again.len() as u64));
+        let again = self.again.split_off(self.again.len() - tiles.min(self.again.len() as u64) as usize);
+        let turns: Vec<u64> = again.into_iter().chain(self.taken..self.taken + fresh).collect();
+        self.taken += fresh;
+        // A row of tiles fits into an array index, as the film does.
+        let pixels = usize::try_from(u64::from(size) * u64::from(pass.step) * u64::from(self.crop.width));
+        let pixels = pixels.unwrap_or(usize::MAX).min(count);
+        let mut planes: Vec<_> = self.planes.iter_mut().map(|(_, plane)| plane.chunks_mut(pixels)).collect();
+        let mut lost = self.lost.chunks_mut(pixels);
+        let films = film.pixels.chunks_mut(pixels).zip(film.finished.chunks_mut(pixels));
+        let bands = films.enumerate().map(|(number, (colors, finished))| {
+            let planes = planes.iter_mut().filter_map(Iterator::next).collect();
+            Mutex::new(Band { first: number * pixels, colors, finished, planes, lost: lost.next().unwrap_or_default() })
+        });
+        let shared = Shared {
+            schedule: SharedSchedule {
+                world: self.world,
+                settings: self.settings,
+                options: &self.options,
+                crop: self.crop,
+                accumulator: self.accumulator.as_ref(),
+                total,
+                before: [self.samples, self.rays],
+            },
+            bands: bands.collect(),
+            pass: &pass,
+            order,
+            turns: &turns,
+            next: AtomicU64::new(0),
+            done: [AtomicU64::new(0), AtomicU64::new(0)],
+            result: Mutex::new(Finished::default()),
+        };
+        with_integrator(self.settings.integrator, Work(&shared));
+        // A poisoned lock means that a worker panicked, which rayon has already passed on.
+        let Finished { tiles, statistics, turns: mut finished } =
+            shared.result.into_inner().unwrap_or_else(PoisonError::into_inner);
+        finished.sort_unstable();
+        self.samples += tiles.iter().map(|tile: &Tile| tile.len() as u64).sum::<u64>() * pass.samples.len() as u64;
+        self.rays += statistics.rays.total();
+        self.statistics.merge(&statistics);
+        self.again.extend(turns.iter().filter(|turn| finished.binary_search(turn).is_err()));
+        if self.taken == order.count && self.again.is_empty() {
+            self.end_pass(pass.completes);
+        }
+        tiles
+    }
+
+    /// Goes on with the next pass.
+    fn end_pass(&mut self, completes_samples: bool) {
+        self.passes.pop_front();
+        self.taken = 0;
+        if completes_samples && let Some(accumulator) = &mut self.accumulator {
+            let planes = std::mem::take(&mut self.planes);
+            // The samples of passes are different ones.
+            let _ = accumulator.add(planes, &self.lost, &self.statistics);
+            (self.lost, self.statistics) = (Vec::new(), Statistics::default());
+        }
+    }
+}
+
+/// One row of tiles: its part of the film, and of the sums of this pass.
+struct Band<'a> {
+    /// The number of its first pixel in the film.
+    first: usize,
+    colors: &'a mut [Rgb],
+    finished: &'a mut [bool],
+    planes: Vec<&'a mut [Rgb]>,
+    lost: &'a mut [u64],
+}
+
+/// What does not change during a step.
+struct SharedSchedule<'b, 'a> {
+    world: &'a World,
+    settings: &'a Settings,
+    options: &'b Options<'a>,
+    crop: Crop,
+    accumulator: Option<&'b Accumulator>,
+    /// Samples in all, and samples and rays before this step.
+    total: u64,
+    before: [u64; 2],
+}
+
+/// What workers share during a step.
+struct Shared<'b, 'a> {
+    schedule: SharedSchedule<'b, 'a>,
+    /// From top to bottom.
+    bands: Vec<Mutex<Band<'b>>>,
+    pass: &'b Pass,
+    order: Spread,
+    /// Which tiles of the order to render, and how many of them have been taken.
+    turns: &'b [u64],
+    next: AtomicU64,
+    /// Samples and rays of the tiles that are done.
+    done: [AtomicU64; 2],
+    result: Mutex<Finished>,
+}
+
+/// What workers have done.
+#[derive(Default)]
+struct Finished {
+    tiles: Vec<Tile>,
+    statistics: Statistics,
+    /// Their turns.
+    turns: Vec<u64>,
+}
+
+/// Starts the workers.
+struct Work<'c, 'b, 'a>(&'c Shared<'b, 'a>);
+
+impl WithIntegrator for Work<'_, '_, '_> {
+    type Output = ();
+    fn run<I: Integrator>(self) {
+        let Self(shared) = self;
+        let options = shared.schedule.options;
+        // More threads than tiles have nothing to do.
+        let threads = if shared.turns.len() == 1 { 1 } else { options.threads.min(shared.turns.len()) };
+        threads::run(threads, || dispatch(options.lanes, Worker::<I>(shared, std::marker::PhantomData)));
+    }
+}
+
+/// What one thread does.
+struct Worker<'c, 'b, 'a, I>(&'c Shared<'b, 'a>, std::marker::PhantomData<I>);
+
+impl<I: Integrator> Kernel for Worker<'_, '_, '_, I> {
+    type Output = ();
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let Self(shared, _) = self;
+        let SharedSchedule { world, settings, options, .. } = shared.schedule;
+        let mut tracer = Tracer::<L, (), I>::new(world, settings, options.cancel, ());
+        let mut mine = Finished::default();
+        while let Some((turn, band, tile)) = shared.take_tile() {
+            let Some(traced) = tracer.trace(&tile, shared.pass.samples.clone()) else { break };
+            shared.store(band, &tile, traced);
+            let statistics = std::mem::take(&mut tracer.statistics);
+            shared.report(tile.len() as u64 * shared.pass.samples.len() as u64, statistics.rays.total());
+            mine.statistics.merge(&statistics);
+            mine.tiles.push(tile);
+            mine.turns.push(turn);
+        }
+        let mut all = lock(&shared.result);
+        all.statistics.merge(&mine.statistics);
+        all.tiles.append(&mut mine.tiles);
+        all.turns.append(&mut mine.turns);
+    }
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl Shared<'_, '_> {
+    /// The next tile, its turn and its band, if there is one and nobody has cancelled.
+    fn take_tile(&self) -> Option<(u64, usize, Tile)> {
+        let turn = *self.turns.get(self.next.fetch_add(1, Ordering::Relaxed) as usize)?;
+        let SharedSchedule { options, crop, .. } = &self.schedule;
+        if options.cancel.is_some_and(|c| c.load(Ordering::Relaxed)) {
+            return None;
+        }
+        let [columns, _] = self.pass.tiles(crop, options.tile_size);
+        let number = self.order.nth(turn);
+        let (column, row) = (number % columns, number / columns);
+        Some((turn, row as usize, self.pass.tile(crop, options.tile_size, [column, row])))
+    }
+
+    /// Stores the pixels of a tile.
+    fn store(&self, band: usize, tile: &Tile, traced: &mut TracedTile) {
+        let SharedSchedule { crop, accumulator, .. } = &self.schedule;
+        let (width, step) = (crop.width as usize, tile.step as usize);
+        let mut band = lock(&self.bands[band]);
+        let Band { first, colors, finished, planes, lost } = &mut *band;
+        let start = (tile.y - crop.y) as usize * width + (tile.x - crop.x) as usize - *first;
+        let row_starts = (0..tile.height as usize).map(|row| start + row * step * width);
+        if let Some(accumulator) = accumulator {
+            let before: u64 = accumulator.samples().iter().map(|range| range.end - range.start).sum();
+            let count = (before + self.pass.samples.len() as u64) as u32;
+            for (row, start) in row_starts.clone().enumerate() {
+                for column in 0..tile.width as usize {
+                    let (from, to) = (row * tile.width as usize + column, start + column * step);
+                    for (plane, (_, sums)) in planes.iter_mut().zip(traced.sums.blocks()) {
+                        plane[to] = sums[from];
+                    }
+                    lost[to] = traced.lost[from];
+                    let blocks = traced.sums.blocks().iter().map(|(_, sums)| sums[from]);
+                    let color = mean(accumulator.sum_with(*first + to, blocks), count);
+                    (colors[to], finished[to]) = (color, true);
+                }
+            }
+        } else {
+            let sums = traced.sum();
+            let count = self.pass.samples.len() as u32;
+            for (start, sums) in row_starts.clone().zip(sums.chunks(tile.width as usize)) {
+                if step == 1 {
+                    colors[start..start + sums.len()].copy_from_slice(sums);
+                    finished[start..start + sums.len()].fill(true);
+                } else {
+                    for (column, &sum) in sums.iter().enumerate() {
+                        (colors[start + column * step], finished[start + column * step]) = (sum, true);
+                    }
+                }
+                if count > 1 {
+                    let row = colors[start..].iter_mut().step_by(step).take(sums.len());
+                    row.for_each(|color| *color = mean(*color, count));
+                }
+            }
+        }
+        if step > 1 {
+            self.fill_squares(tile, start, colors, finished);
+        }
+    }
+
+    /// Shows the pixels of a coarse tile in place of those around them that are not finished.
+    fn fill_squares(&self, tile: &Tile, start: usize, colors: &mut [Rgb], finished: &[bool]) {
+        let (width, step) = (self.schedule.crop.width as usize, tile.step as usize);
+        // The first pass has all the room up to its next pixels; later ones lie between the pixels of passes before them.
+        let side = if self.pass.x == 0 && self.pass.y == 0 { step } else { step / 2 };
+        let left = start % width;
+        for row in 0..tile.height as usize {
+            for column in 0..tile.width as usize {
+                let at = start + row * step * width + column * step;
+                let right = side.min(width - left - column * step);
+                let (color, rows) = (colors[at], side.min((colors.len() - at).div_ceil(width)));
+                for below in (0..rows).map(|y| at + y * width) {
+                    for to in (below..below + right).filter(|&to| !finished[to]) {
+                        colors[to] = color;
+                    }
+                }
+            }
+        }
+    }
+
+    fn report(&self, samples: u64, rays: u64) {
+        let [done_samples, done_rays] = &self.done;
+        let SharedSchedule { options, total, before, .. } = &self.schedule;
+        let samples = before[0] + done_samples.fetch_add(samples, Ordering::Relaxed) + samples;
+        let rays = before[1] + done_rays.fetch_add(rays, Ordering::Relaxed) + rays;
+        if let Some(progress) = options.progress {
+            progress(Progress { samples, total_samples: *total, rays });
+        }
+    }
+}
