@@ -1,10 +1,10 @@
 # Everything goes through these. What they need is installed without asking; what cannot be is named.
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test soak fuzz bench bench-peers pictures notebooks clean
+.PHONY: help demo test soak fuzz bench bench-counts bench-peers pictures notebooks clean
 
 help: ## This list
-	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-11s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
 demo: ## Build Snell, render the default scene, say where the picture is
 	@scripts/demo.sh
@@ -20,6 +20,9 @@ fuzz: ## Fuzz every reader for a minute each (SECONDS_EACH=600 make fuzz for lon
 
 bench: ## Time kernels, trees, rays and pictures (BASELINE=name saves, AGAINST=name compares)
 	@scripts/bench.sh
+
+bench-counts: ## Count instructions under valgrind (BASELINE=1 saves, ONLY=gallery counts less)
+	@scripts/bench-counts.sh
 
 bench-peers: ## Compare with POV-Ray and Embree where they are installed, and measure how cost grows
 	@scripts/bench-peers.sh
