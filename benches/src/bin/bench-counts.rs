@@ -10,7 +10,7 @@
 #![allow(clippy::print_stdout, reason = "its answers go there")]
 
 use snell::geometry::bvh::Quality;
-use snell::render::{LaneWidth, Options, render};
+use snell::render::{LaneWidth, Options, Settings, render};
 use snell::scene::{Integrator, Scene};
 use snell::world::World;
 use snell_bench::{knot, scenes};
@@ -79,11 +79,14 @@ fn main() -> Result<(), String> {
             count_instructions_of(&mut || world(&scene).map(|world| drop(black_box(world))))?;
         }
         ["render", name, lanes] => {
-            let world = world(&scene(name)?)?;
+            let scene = scene(name)?;
+            let world = world(&scene)?;
             let lanes = lanes.parse().ok().and_then(LaneWidth::of).ok_or("lanes are 1, 2, 4 or 8")?;
-            let options = Options { threads: 1, lanes, ..Options::default() };
+            let (settings, options) = (Settings::of(&scene), Options { threads: 1, lanes, ..Options::default() });
             count_instructions_of(&mut || {
-                render(&world, &options).map(|picture| drop(black_box(picture))).map_err(|error| error.to_string())
+                render(&world, &settings, &options)
+                    .map(|picture| drop(black_box(picture)))
+                    .map_err(|error| error.to_string())
             })?;
         }
         _ => return Err("not understood; see the top of bench-counts.rs".to_owned()),

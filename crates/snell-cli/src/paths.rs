@@ -6,7 +6,6 @@ use crate::progress::Reporter;
 use crate::recipe::Recipe;
 use crate::say::{FAILED, Failure, Outcome, USAGE, tell};
 use snell::explain::{Path as Way, layers, only};
-use snell::film::transfer::Encoding;
 use snell::film::{Crop, Film, Rgb};
 use snell::render::Options;
 use snell::world::World;

@@ -18,6 +18,13 @@ fn render(folder: &Path, arguments: &[&str]) {
     run(folder, &[&["render", "-q"], arguments].concat());
 }
 
+/// The film of a scene, by the library.
+fn film_of(scene: &snell::scene::Scene) -> snell::film::Film {
+    let world = snell::world::World::new(scene).unwrap();
+    let settings = snell::render::Settings::of(scene);
+    snell::render::render(&world, &settings, &snell::render::Options::default()).unwrap().film
+}
+
 #[test]
 fn built_in_scenes_render_from_anywhere_and_can_be_saved() {
     let folder = tempfile::tempdir().unwrap();
@@ -160,10 +167,7 @@ fn a_picture_made_by_an_older_default_is_made_again_by_it() {
     let old = |keep: &[&str], name: &str| {
         let source = snell_formats::Source::new("glass.toml", GLASS);
         let scene = snell_formats::scene_file::parse(&source, snell_formats::scene_file::Syntax::Toml).unwrap();
-        let film =
-            snell::render::render(&snell::world::World::new(&scene).unwrap(), &snell::render::Options::default())
-                .unwrap()
-                .film;
+        let film = film_of(&scene);
         let mut text = recipe("opaque.png");
         let always = ["snell", "name", "kind", "text", "folder", "film_sha256"];
         text.as_object_mut().unwrap().retain(|key, _| always.contains(&key.as_str()) || keep.contains(&key.as_str()));
@@ -214,8 +218,7 @@ fn an_older_image_plane_stays_where_it_was() {
         snell_formats::scene_file::parse(&source, snell_formats::scene_file::Syntax::Toml).unwrap()
     };
     let then = scene(&fs::read_to_string(at.join("fov.toml")).unwrap().replace("fov = 40", "fov = 40\nnear = -1"));
-    let world = snell::world::World::new(&then).unwrap();
-    let film = snell::render::render(&world, &snell::render::Options::default()).unwrap().film;
+    let film = film_of(&then);
     let encoding = snell::film::transfer::Encoding { transfer: then.render.transfer, rounding: then.render.rounding };
     let png = snell_formats::picture::Format::Png { sixteen_bit: false };
     snell_formats::picture::write(&at.join("old.png"), png, &film, encoding, Some(&recipe.to_string())).unwrap();

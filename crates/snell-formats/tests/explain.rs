@@ -34,6 +34,14 @@ fn scenes(group: &str, size: u32) -> Vec<(String, Scene)> {
     all
 }
 
+fn pairs(samples: &[[f64; 3]], add: &impl Fn([f64; 3], [f64; 3]) -> [f64; 3]) -> [f64; 3] {
+    if let [only] = samples {
+        return *only;
+    }
+    let (left, right) = samples.split_at(samples.len() / 2);
+    add(pairs(left, add), pairs(right, add))
+}
+
 /// The contributions of an explanation, folded as is written: within a sample one by one; the samples pairwise over aligned ranges
 /// of powers of two, and the largest such ranges one by one; then the mean.
 fn folded(explanation: &Explanation) -> [f64; 3] {
@@ -41,13 +49,6 @@ fn folded(explanation: &Explanation) -> [f64; 3] {
     let sample =
         |nodes: &[snell::explain::ExplainedNode]| nodes.iter().fold([0.0; 3], |sum, n| add(sum, n.contribution));
     let samples: Vec<[f64; 3]> = explanation.samples.iter().map(|s| sample(&s.nodes)).collect();
-    fn pairs(samples: &[[f64; 3]], add: &impl Fn([f64; 3], [f64; 3]) -> [f64; 3]) -> [f64; 3] {
-        if let [only] = samples {
-            return *only;
-        }
-        let (left, right) = samples.split_at(samples.len() / 2);
-        add(pairs(left, add), pairs(right, add))
-    }
     let (mut blocks, mut rest) = (Vec::new(), samples.as_slice());
     while !rest.is_empty() {
         let (block, after) = rest.split_at(1 << rest.len().ilog2());

@@ -15,7 +15,11 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 fn picture(scene: &Scene, options: &Options<'_>) -> Film {
-    render(&World::new(scene).unwrap(), &Settings::of(scene), options).unwrap().film
+    film(&World::new(scene).unwrap(), scene, options)
+}
+
+fn film(world: &World, scene: &Scene, options: &Options<'_>) -> Film {
+    render(world, &Settings::of(scene), options).unwrap().film
 }
 
 fn hash(film: &Film) -> String {
@@ -68,10 +72,10 @@ fn find_drivers(folder: &Path, found: &mut Vec<PathBuf>) {
 fn the_tree_changes_nothing_far_from_the_origin_either() {
     for offset in [0.0, 1000.0, 4096.0, 1e6, -3e8] {
         for seed in 0..12 {
-            let world = World::new(&far_away(offset, seed, seed % 2 == 0)).unwrap();
-            let tree = picture(&world, &Options::default());
+            let scene = far_away(offset, seed, seed % 2 == 0);
+            let tree = picture(&scene, &Options::default());
             assert!(tree.pixels.iter().any(|p| p.mean() > 0.1), "a black picture proves nothing");
-            let brute = picture(&world.brute_force(), &Options::default());
+            let brute = film(&World::new(&scene).unwrap().brute_force(), &scene, &Options::default());
             assert!(tree == brute, "offset {offset}, seed {seed}");
         }
     }
@@ -81,17 +85,17 @@ fn the_tree_changes_nothing_far_from_the_origin_either() {
 /// in the commit, by what the failing test prints.
 #[test]
 fn the_bits_are_those_of_the_first_light() {
-    let film = |scene: Scene| picture(&scene, &Options::default());
-    let hashes = first_light().into_iter().map(|(_, scene)| hash(&film(scene)));
+    let hashes = first_light().into_iter().map(|(_, scene)| hash(&picture(&scene, &Options::default())));
     assert_eq!(disk::sha256(hashes), "ce66979c6916635c79a8b5b28afcd5a2f4247d9827a1f1a4d2a43ee1c1208102");
 }
 
 #[test]
 fn a_mesh_held_once_looks_as_if_written_out_in_all_its_places() {
-    let worlds = [true, false].map(|held_once| World::new(&instances(0.0, held_once)).unwrap());
+    let scenes = [true, false].map(|held_once| instances(0.0, held_once));
+    let worlds = scenes.each_ref().map(|scene| World::new(scene).unwrap());
     assert_eq!(worlds[0].primitive_count(), worlds[1].primitive_count());
     assert!(8 * worlds[0].memory() < worlds[1].memory(), "held twice for twenty places each: {:?}", worlds[0].tree());
-    let films = worlds.each_ref().map(|world| picture(world, &Options::default()));
+    let films = [0, 1].map(|i| film(&worlds[i], &scenes[i], &Options::default()));
     assert!(films[0].pixels.iter().any(|p| p.mean() > 0.1), "a black picture proves nothing");
     // The same but for roundings of hits by 1e-13, which mirrors multiply, so that a pixel may see something else.
     let close = |a: Rgb, b: Rgb| [a.r - b.r, a.g - b.g, a.b - b.b].iter().all(|d| d.abs() < 1e-9);

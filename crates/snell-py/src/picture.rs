@@ -35,9 +35,8 @@ impl NativePicture {
     /// Renders, and ^C ends it with what is done by then.
     pub fn render(py: Python<'_>, ready: Arc<Ready>, threads: usize, progress: Option<&Py<PyAny>>) -> PyResult<Self> {
         let started = Instant::now();
-        let (rendered, stopped) = watched(py, threads, None, progress, |options| {
-            render(&ready.world, &Settings::of(&ready.scene), options)
-        });
+        let (rendered, stopped) =
+            watched(py, threads, None, progress, |options| render(&ready.world, &Settings::of(&ready.scene), options));
         let seconds = started.elapsed().as_secs_f64();
         match stopped {
             Some(error) if !error.is_instance_of::<PyKeyboardInterrupt>(py) => return Err(error),

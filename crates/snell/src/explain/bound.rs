@@ -2,8 +2,8 @@
 
 use crate::film::Rgb;
 use crate::integrate::{Integrator, Most, WithIntegrator, size, with_integrator};
-use crate::scene::{self, Material};
-use crate::world::World;
+use crate::scene;
+use crate::world::{CompiledMaterial, World};
 
 /// So many further levels are considered.
 pub(super) const LEVELS: i32 = 10;
@@ -32,14 +32,14 @@ impl WithIntegrator for Bound<'_> {
         let mut radiance = size(world.background.largest());
         let mut gain = Rgb::gray(0.0);
         let brightest = world.patterns.iter().fold(Rgb::gray(1.0), |most, pattern| largest(most, pattern.largest()));
-        for (number, m) in (0..).zip(&world.materials) {
+        for m in &world.materials {
             let local = size(world.ambient) * size(m.ka) * brightest + lights * (size(m.kd) * brightest + size(m.ks));
             let Most { local: weighs, children } = I::most(m, brightest);
             radiance = largest(radiance, weighs * local + size(m.emission));
             gain = largest(gain, children);
-            if world.has_holes(number) {
+            if m.has_holes {
                 // `ko` may be anything down to 0.
-                let there_is_none = Material { ko: Rgb::gray(0.0), ..m.clone() };
+                let there_is_none = CompiledMaterial { ko: Rgb::gray(0.0), ..*m };
                 gain = largest(gain, I::most(&there_is_none, brightest).children);
             }
         }

@@ -9,8 +9,8 @@ use super::lecture::{exit_ray, mirror_ray, refracts};
 use super::{Integrator, Most, size};
 use crate::film::Rgb;
 use crate::lanes::{Lanes, record};
-use crate::scene::Material;
 use crate::trace::{Batch, Children, FirstSurface, RayKind, Settings};
+use crate::world::CompiledMaterial;
 
 record! {
     /// What a ray carries.
@@ -68,7 +68,7 @@ impl<const GLASS: bool> Integrator for Course<GLASS> {
         a * hits.local_color()
     }
 
-    fn most(material: &Material, _brightest: Rgb) -> Most {
+    fn most(material: &CompiledMaterial, _brightest: Rgb) -> Most {
         let kr = size(material.kr);
         let passes = if GLASS { size(Rgb::gray(1.0) - material.kr) } else { Rgb::gray(0.0) };
         Most { local: Rgb::gray(1.0), children: Rgb::new(kr.r + passes.r, kr.g + passes.g, kr.b + passes.b) }

@@ -3,8 +3,8 @@
 use super::{Integrator, Most};
 use crate::film::Rgb;
 use crate::lanes::{Lanes, Mask};
-use crate::scene::Material;
 use crate::trace::{Batch, Children, Propagation, Settings};
+use crate::world::CompiledMaterial;
 use std::marker::PhantomData;
 
 /// No light at all; rays go from the camera to what they meet, in this way.
@@ -37,7 +37,7 @@ impl<P: Propagation + Copy> Integrator for FirstHit<P> {
         Rgb::black()
     }
 
-    fn most(_material: &Material, _brightest: Rgb) -> Most {
+    fn most(_material: &CompiledMaterial, _brightest: Rgb) -> Most {
         Most { local: Rgb::gray(0.0), children: Rgb::gray(0.0) }
     }
 }

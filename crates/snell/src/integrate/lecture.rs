@@ -15,8 +15,8 @@ use crate::film::Rgb;
 use crate::geometry::Vec3;
 use crate::lanes::{Lanes, Mask, record};
 use crate::optics::snell;
-use crate::scene::Material;
 use crate::trace::{Batch, Children, FirstSurface, Outgoing, RayKind, Settings};
+use crate::world::CompiledMaterial;
 
 record! {
     /// What a ray carries.
@@ -69,7 +69,7 @@ impl Integrator for Lecture {
         local(&ray, &surface) * hits.local_color()
     }
 
-    fn most(material: &Material, _brightest: Rgb) -> Most {
+    fn most(material: &CompiledMaterial, _brightest: Rgb) -> Most {
         let (ko, kr, clear) = (size(material.ko), size(material.kr), size(Rgb::gray(1.0) - material.ko));
         Most { local: ko, children: ko * kr + clear * kr }
     }

@@ -5,14 +5,16 @@
 mod course;
 mod first_hit;
 mod lecture;
+#[cfg(test)]
+mod tests;
 mod whitted;
 
 use crate::film::Rgb;
 use crate::lanes::{Lanes, Record, Row};
-use crate::scene::{self, Material};
+use crate::scene;
 use crate::trace::interfaces::Interfaces;
 use crate::trace::{Batch, Children, FirstSurface, Propagation, Settings};
-use crate::world::World;
+use crate::world::{CompiledMaterial, World};
 use std::fmt::Debug;
 
 /// A model of light.
@@ -66,7 +68,7 @@ pub(crate) trait Integrator: Copy + Debug + Sync + 'static {
     }
 
     /// What a surface of this material can make of what arrives, at most. `brightest` is the largest colour of any pattern.
-    fn most(material: &Material, brightest: Rgb) -> Most;
+    fn most(material: &CompiledMaterial, brightest: Rgb) -> Most;
 }
 
 /// The most that a hit can add, and that its children can carry, for each unit of throughput and without signs.

@@ -22,12 +22,11 @@ use crate::geometry::Vec3;
 use crate::lanes::{Lanes, Mask, index, record};
 use crate::optics::fresnel::fresnel_dielectric;
 use crate::optics::snell::{reflect, refract};
-use crate::scene::Material;
 use crate::trace::interfaces::{InterfaceState, Interfaces, Travel, media_of, mirrored, onward, through_holes};
 use crate::trace::media::{Media, WHITE};
 use crate::trace::pane::{Pane, Passage};
 use crate::trace::{Batch, Children, RayKind, Settings};
-use crate::world::{Background, World};
+use crate::world::{Background, CompiledMaterial, World};
 
 record! {
     /// What a ray carries.
@@ -92,10 +91,14 @@ impl Integrator for Whitted {
         self.ends_early() && part_carried(world, carried.throughput, index(travel.band) as u32) < self.min_throughput
     }
 
-    fn most(material: &Material, brightest: Rgb) -> Most {
+    fn most(material: &CompiledMaterial, brightest: Rgb) -> Most {
         let (ko, kr, clear) = (size(material.ko), size(material.kr), size(Rgb::gray(1.0) - material.ko));
         let dye = size(material.kd) * brightest;
-        let dye = if material.dyed { Rgb::new(dye.r.max(1.0), dye.g.max(1.0), dye.b.max(1.0)) } else { Rgb::gray(1.0) };
+        let dye = if material.tints > 0.0 {
+            Rgb::new(dye.r.max(1.0), dye.g.max(1.0), dye.b.max(1.0))
+        } else {
+            Rgb::gray(1.0)
+        };
         Most { local: ko, children: ko * kr + clear * dye }
     }
 }
@@ -138,7 +141,7 @@ fn is_pane<L: Lanes>(hits: &Batch<'_, L, Interfaces>) -> L::Mask {
     }
     let thickness = hits.material(
         #[inline(always)]
-        |m| m.thickness.unwrap_or(-1.0),
+        |m| m.thickness,
     );
     hits.active & face.before.eq(face.after) & !thickness.lt(L::splat(0.0))
 }
@@ -158,9 +161,12 @@ fn through_panes<L: Lanes>(hits: &Batch<'_, L, Interfaces>, media: &Media<'_>) -
     );
     let thickness = hits.material(
         #[inline(always)]
-        |m| m.thickness.unwrap_or(0.0),
+        |m| m.thickness,
     );
-    let sigma_a = hits.material_color(Material::absorption);
+    let sigma_a = hits.material_color(
+        #[inline(always)]
+        |m| m.sigma_a,
+    );
     let pane = Pane { thickness, eta, sigma_a };
     // By the face itself: the new start stays in its plane.
     (pane.passage(wo.dot(n)), pane.behind(hits.point(), ng, wo))
@@ -207,7 +213,7 @@ fn scatter<L: Lanes>(
 
     let dyed = hits.material(
         #[inline(always)]
-        |m| if m.dyed { 1.0 } else { 0.0 },
+        |m| m.tints,
     );
     let dyes = outer & dyed.gt(zero) & !cut_out;
     let (clear, dye) = (white - ko, if dyes.any() { Rgb::select(dyes, hits.dye(), white) } else { white });

@@ -18,14 +18,15 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 ///
 /// ```
 /// # use snell::scene::{Camera, Integrator, Render, Scene};
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// # let camera = Camera::new([0.0, 0.0, 10.0], [0.0; 3], [0.0, 1.0, 0.0], [-1.0, 1.0, -1.0, 1.0], -5.0);
 /// # let scene = Scene::new(Render::new(Integrator::Lecture, [64, 64]), camera);
 /// use snell::render::{Options, Passes, Renderer, Settings};
 ///
-/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let world = snell::world::World::new(&scene).map_err(|problems| problems[0].to_string())?;
+/// let settings = Settings::of(&scene);
 /// let options = Options { passes: Passes::CoarseToFine { coarsest: 8 }, ..Options::default() };
-/// let mut renderer = Renderer::new(&world, &Settings::of(scene), &options)?;
+/// let mut renderer = Renderer::new(&world, &settings, &options)?;
 /// while !renderer.is_finished() {
 ///     // One tile, here on the caller's thread; `renderer.film()` may be shown after each.
 ///     let changed = renderer.step(1);

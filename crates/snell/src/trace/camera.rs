@@ -204,7 +204,7 @@ mod tests {
         let frame = CameraFrame::new(&camera, &Render::new(Integrator::Lecture, [64, 64]));
         let rays = through(&frame, &Tile { x: 0, y: 0, step: 1, width: 16, height: 16 }, None);
         let may_meet = |center: Vec3, radius: f64| rays.may_meet(&Sphere { center, radius });
-        assert!(may_meet(Vec3::default(), 2.0));
+        assert!(!may_meet(Vec3::default(), 2.0));
         assert!(may_meet(Vec3::new(-8.0, 8.0, 0.0), 0.1));
         assert!(!may_meet(Vec3::new(8.0, -8.0, 20.0), 0.1), "behind the eye");
     }

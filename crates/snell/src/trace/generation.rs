@@ -249,7 +249,7 @@ impl<'a, L: Lanes, O: Observer, I: Integrator> Tracer<'a, L, O, I> {
             world: self.world,
             shadows: self.settings.shadows,
             state: &mut self.state,
-            packet: &mut *self.packet,
+            packet: &mut self.packet,
         };
         self.statistics.rays.shadow += L::call(LocalColors {
             scenery,

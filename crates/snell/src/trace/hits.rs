@@ -8,8 +8,7 @@ use crate::film::Rgb;
 use crate::geometry::Vec3;
 use crate::geometry::bvh::Few;
 use crate::lanes::{Columns, Lanes, MAX_WIDTH, Mask, Number, Record, Row, Table, index, table};
-use crate::scene::Material;
-use crate::world::World;
+use crate::world::{CompiledMaterial, World};
 
 /// As a primitive: nothing is there, only the background.
 pub(super) const SKY: f64 = -1.0;
@@ -340,7 +339,7 @@ impl<L: Lanes, P: Propagation> Batch<'_, L, P> {
     }
 
     #[inline(always)]
-    pub fn material(&self, value: impl Fn(&Material) -> f64) -> L {
+    pub fn material(&self, value: impl Fn(&CompiledMaterial) -> f64) -> L {
         if self.one_material {
             L::splat(value(self.material_of(0)))
         } else {
@@ -349,7 +348,7 @@ impl<L: Lanes, P: Propagation> Batch<'_, L, P> {
     }
 
     #[inline(always)]
-    pub fn material_color(&self, value: impl Fn(&Material) -> Rgb) -> Rgb<L> {
+    pub fn material_color(&self, value: impl Fn(&CompiledMaterial) -> Rgb) -> Rgb<L> {
         if self.one_material {
             value(self.material_of(0)).splat()
         } else {
@@ -359,7 +358,7 @@ impl<L: Lanes, P: Propagation> Batch<'_, L, P> {
 
     /// The same of a colour that patterns multiply.
     #[inline(always)]
-    pub fn patterned(&self, value: impl Fn(&Material) -> Rgb) -> Rgb<L> {
+    pub fn patterned(&self, value: impl Fn(&CompiledMaterial) -> Rgb) -> Rgb<L> {
         let color = self.material_color(value);
         if self.hits.tints.len() == 0 {
             return color;
@@ -398,7 +397,7 @@ impl<L: Lanes, P: Propagation> Batch<'_, L, P> {
     }
 
     #[inline(always)]
-    fn material_of(&self, lane: usize) -> &Material {
+    fn material_of(&self, lane: usize) -> &CompiledMaterial {
         let row = (self.start + lane).min(self.hits.len() - 1);
         &self.world.materials[index(self.hits.surface.material(row))]
     }

@@ -418,7 +418,7 @@ impl Paths {
         }
         // A pane shifts aside by its thickness at most; beyond an edge that is on its next face.
         let within = world.object_of(primitive) == world.object_of(index(source) as u32);
-        let thickness = world.materials[world.material_of(index(source)) as usize].thickness.unwrap_or(0.0);
+        let thickness = world.materials[world.material_of(index(source)) as usize].thickness.max(0.0);
         t <= world.clearance + if within { thickness } else { 0.0 }
     }
 

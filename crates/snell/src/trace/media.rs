@@ -240,9 +240,11 @@ impl<'a> Media<'a> {
     fn through_surface(&self, set: u32, primitive: usize, way: &Leaving, t: f64) -> Rgb {
         let (world, point) = (self.world, way.origin + way.dir * t);
         let material = &world.materials[world.material_of(primitive) as usize];
-        let Some(thickness) = material.thickness else { return world.lets_through(primitive, point) };
+        if !material.is_pane() {
+            return world.lets_through(primitive, point);
+        }
         let eta = material.eta / self.medium(set).eta;
-        let pane = Pane::<f64> { thickness, eta, sigma_a: material.absorption() };
+        let pane = Pane::<f64> { thickness: material.thickness, eta, sigma_a: material.sigma_a };
         let cos_theta_i = world.geometric_normal(primitive, point).dot(way.dir).abs();
         world.lets_through(primitive, point) * pane.passage(cos_theta_i).transmittance
     }

@@ -27,7 +27,7 @@ impl Block {
     fn joined_with(self, next: Self) -> Option<Self> {
         let joins = self.log2 == next.log2
             && self.samples().end == next.samples().start
-            && self.samples().start % (2u64 << self.log2) == 0;
+            && self.samples().start.is_multiple_of(2u64 << self.log2);
         joins.then_some(Self { first: self.first, log2: self.log2 + 1 })
     }
 

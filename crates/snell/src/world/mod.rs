@@ -3,6 +3,7 @@
 mod camera;
 mod lamp;
 mod light;
+mod material;
 mod mesh;
 mod skipped;
 mod solid;
@@ -14,6 +15,7 @@ mod tree;
 pub use camera::CameraFrame;
 pub(crate) use camera::JITTER;
 pub(crate) use light::LightSource;
+pub(crate) use material::CompiledMaterial;
 use mesh::{MaterialIds, Parts};
 pub(crate) use solid::{Medium, NO_SOLID, Solid};
 pub use surface::NO_PRIMITIVE;
@@ -24,8 +26,8 @@ pub(crate) use texture::{Background, Pattern};
 use crate::film::Rgb;
 use crate::geometry::bvh::{Bvh, Quality, TreeStatistics};
 use crate::geometry::{Affine, Bounds, Sphere};
-use crate::optics::spectrum::Band;
-use crate::scene::{Integrator, Material, Mesh, Problem, Scene, Step, Warning, validate};
+use crate::optics::spectrum::{self, Band};
+use crate::scene::{Integrator, Mesh, Problem, Scene, Step, Warning, validate};
 
 /// An object of the scene: the primitives `first .. first + count`.
 #[derive(Clone, Debug, PartialEq)]
@@ -55,7 +57,7 @@ pub struct World {
     pub(crate) ambient: Rgb,
     pub(crate) eta_outside: f64,
     pub(crate) lights: Vec<LightSource>,
-    pub(crate) materials: Vec<Material>,
+    pub(crate) materials: Vec<CompiledMaterial>,
     pub(crate) spheres: Vec<Sphere>,
     /// How each sphere is turned back for its texture; empty where none is turned.
     sphere_turns: Vec<Affine>,
@@ -70,11 +72,8 @@ pub struct World {
     pub(crate) bands: Vec<Band>,
     /// The indices of the bands, of each dispersive material.
     pub(crate) spectra: Vec<Vec<f64>>,
-    /// For each material its spectrum.
-    spectrum_of: Vec<Option<u32>>,
-    /// Patterns on surfaces, and for each material its pattern.
+    /// Patterns on surfaces.
     pub(crate) patterns: Vec<Pattern>,
-    pattern_of: Vec<Option<u32>>,
     /// Has a pattern places where the surface is not there?
     pub(crate) has_alpha: bool,
     /// Light from where nothing is.
@@ -108,27 +107,31 @@ impl World {
     /// As [`World::new`].
     pub fn build(scene: &Scene, quality: Quality, threads: usize) -> Result<Self, Vec<Problem>> {
         let warnings = validate(scene)?;
+        let has_media = scene.render.integrator.has_media();
+        let bands =
+            if has_media && scene.render.bands > 1 { spectrum::bands(scene.render.bands as usize) } else { Vec::new() };
+        let patterns = texture::patterns(scene, has_media)?;
+        let has_alpha: Vec<bool> = patterns.iter().map(Pattern::has_alpha).collect();
+        let (materials, spectra) = material::compile(scene, &bands, &has_alpha);
         let mut world = Self {
-            has_media: scene.render.integrator.has_media(),
+            has_media,
             camera: CameraFrame::new(&scene.camera, &scene.render),
             objects: Vec::new(),
             warnings,
             ambient: scene.ambient,
             eta_outside: scene.eta_outside,
             lights: scene.lights.iter().map(LightSource::new).collect(),
-            materials: scene.materials.values().cloned().collect(),
+            materials,
             spheres: Vec::new(),
             sphere_turns: Vec::new(),
             surfaces: Surfaces::default(),
             models: Vec::new(),
             placements: Vec::new(),
             solids: Vec::new(),
-            bands: Vec::new(),
-            spectra: Vec::new(),
-            spectrum_of: Vec::new(),
-            patterns: Vec::new(),
-            pattern_of: Vec::new(),
-            has_alpha: false,
+            bands,
+            spectra,
+            patterns,
+            has_alpha: has_alpha.contains(&true),
             background: Background::new(scene.background, scene.sky.as_ref()).ok_or_else(|| unread("sky"))?,
             reach: 0.0,
             clearance: 0.0,
@@ -142,15 +145,8 @@ impl World {
             let help = "move it away from the eye: let `near` be more negative, and `bounds` larger by the same factor";
             return Err(vec![Problem { place, message, help: Some(help.to_owned()) }]);
         }
-        if world.materials.is_empty() {
-            // Where nothing is, nobody asks what it is made of; but rows of the background are rows like others.
-            world.materials.push(Material::default());
-        }
-        world.find_indices(scene.render.bands);
         let material_ids: MaterialIds<'_> =
             scene.materials.keys().enumerate().map(|(i, name)| (name.as_str(), i as u32)).collect();
-        world.find_patterns(scene)?;
-        world.leave_out_thickness();
         for (i, sphere) in scene.spheres.iter().enumerate() {
             world.add_sphere(i, sphere, &material_ids).map_err(|problem| vec![problem])?;
         }
@@ -190,16 +186,7 @@ impl World {
     /// Is there real optics, and is this material the surface of what light goes through? Thin panes have no inside.
     fn refracts(&self, material: u32) -> bool {
         let material = &self.materials[material as usize];
-        self.has_media && material.is_transparent() && material.thickness.is_none()
-    }
-
-    /// Takes the thickness from materials that let no light through: what has one is a pane.
-    fn leave_out_thickness(&mut self) {
-        for number in 0..self.materials.len() {
-            if !self.materials[number].is_transparent() && !self.has_holes(number as u32) {
-                self.materials[number].thickness = None;
-            }
-        }
+        self.has_media && material.is_transparent() && !material.is_pane()
     }
 
     /// Number of primitives.

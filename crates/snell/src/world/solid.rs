@@ -1,12 +1,11 @@
 //! Solids: what encloses a medium, and which primitives are its surface.
 
+use super::material::NONE;
 use super::{NO_PRIMITIVE, World};
 use crate::film::Rgb;
 use crate::geometry::bvh::{Instance, Shapes};
 use crate::geometry::solid::{Component, EdgePlace, Found, Orientation, Report, Verdict, structure};
 use crate::geometry::{Affine, Bounds, TriangleMesh, Vec3, triangle};
-use crate::optics::dispersion::LINE_D_NM;
-use crate::optics::spectrum;
 
 /// "No solid", where the number of one is expected: a primitive that lets no light through.
 pub(crate) const NO_SOLID: u32 = u32::MAX;
@@ -146,37 +145,16 @@ impl World {
     /// The medium of a material.
     pub(super) fn medium_of(&self, material: u32) -> Medium {
         let m = &self.materials[material as usize];
-        let spectrum = self.spectrum_of[material as usize];
-        Medium { eta: m.eta, spectrum, sigma_a: m.absorption(), priority: m.priority }
+        let spectrum = (m.spectrum != NONE).then_some(m.spectrum);
+        Medium { eta: m.eta, spectrum, sigma_a: m.sigma_a, priority: m.priority }
     }
 
     /// The index of a material for a band of light.
     pub(crate) fn eta_of(&self, material: u32, band: Option<u32>) -> f64 {
-        let spectrum = self.spectrum_of[material as usize].zip(band);
-        spectrum.map_or(self.materials[material as usize].eta, |(spectrum, band)| {
-            self.spectra[spectrum as usize][band as usize]
-        })
-    }
-
-    /// Works out the indices of all materials: of the d line, and of the bands of real optics.
-    pub(super) fn find_indices(&mut self, bands: u32) {
-        if self.has_media && bands > 1 {
-            self.bands = spectrum::bands(bands as usize);
-        }
-        for material in &mut self.materials {
-            // Validation has seen to it that there are indices.
-            let Ok(dispersion) = material.dispersion() else { continue };
-            material.eta = dispersion.eta(LINE_D_NM).unwrap_or(material.eta);
-            material.sigma_a = Some(material.absorption());
-            let spectrum: Vec<f64> = self.bands.iter().filter_map(|b| dispersion.eta(b.wavelength_nm).ok()).collect();
-            let differ = spectrum.iter().any(|eta| eta.to_bits() != material.eta.to_bits());
-            let known = self.spectra.iter().position(|other| *other == spectrum);
-            self.spectrum_of.push((differ && spectrum.len() == self.bands.len()).then(|| {
-                known.unwrap_or_else(|| {
-                    self.spectra.push(spectrum);
-                    self.spectra.len() - 1
-                }) as u32
-            }));
+        let m = &self.materials[material as usize];
+        match band {
+            Some(band) if m.spectrum != NONE => self.spectra[m.spectrum as usize][band as usize],
+            _ => m.eta,
         }
     }
 

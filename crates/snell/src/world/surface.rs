@@ -113,7 +113,7 @@ impl World {
     pub(crate) fn shows(&self, primitive: usize, point: Vec3) -> bool {
         let (material, black) = (&self.materials[self.material_of(primitive) as usize], Rgb::gray(0.0));
         let shines = material.ko != black || material.emission != black;
-        material.dyed || (shines && self.coverage(primitive, point) > 0.0)
+        material.tints > 0.0 || (shines && self.coverage(primitive, point) > 0.0)
     }
 
     /// Does no light at all go through, with this kind of shadows?
@@ -135,7 +135,7 @@ impl World {
     /// What of the light on the outer side of a surface does not go through.
     fn opacity(&self, primitive: usize, point: Vec3) -> Rgb {
         let material = &self.materials[self.material_of(primitive) as usize];
-        let is_clear = self.solid_of(primitive) != NO_SOLID || material.thickness.is_some();
+        let is_clear = self.solid_of(primitive) != NO_SOLID || material.is_pane();
         let whole = if is_clear { material.ko } else { Rgb::gray(1.0) };
         whole * self.coverage(primitive, point)
     }
@@ -144,7 +144,7 @@ impl World {
     pub(crate) fn lets_through(&self, primitive: usize, point: Vec3) -> Rgb {
         let material = &self.materials[self.material_of(primitive) as usize];
         let clear = Rgb::gray(1.0) - self.opacity(primitive, point);
-        if !material.dyed || self.is_cut_out(primitive) {
+        if material.tints == 0.0 || self.is_cut_out(primitive) {
             return clear;
         }
         let (tint, alpha) = self.pattern_at(primitive, point);
@@ -272,15 +272,13 @@ impl World {
 
     /// Is it one face with nothing inside that a ray may go through: a pane, or a surface with holes?
     pub(crate) fn is_thin(&self, primitive: usize) -> bool {
-        self.materials[self.material_of(primitive) as usize].thickness.is_some() || self.is_cut_out(primitive)
+        self.materials[self.material_of(primitive) as usize].is_pane() || self.is_cut_out(primitive)
     }
 
     /// Is it a surface of no solid and no pane, with places where it is not there?
     pub(crate) fn is_cut_out(&self, primitive: usize) -> bool {
         let material = self.material_of(primitive);
-        self.has_holes(material)
-            && self.materials[material as usize].thickness.is_none()
-            && self.solid_of(primitive) == NO_SOLID
+        self.has_holes(material) && !self.materials[material as usize].is_pane() && self.solid_of(primitive) == NO_SOLID
     }
 
     /// Is nothing there at this point?

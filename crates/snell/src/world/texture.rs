@@ -1,9 +1,10 @@
 //! Patterns on surfaces, and the sky, as the kernels see them.
 
 use super::World;
+use super::material::NONE;
 use crate::film::Rgb;
 use crate::geometry::{Affine, Vec3};
-use crate::scene::{Material, Problem, Scene, Sky, Step, Texture};
+use crate::scene::{Problem, Scene, Sky, Step, Texture};
 use crate::texture::{Image, barycentric, checker, latlong_uv, sphere_uv};
 use std::sync::Arc;
 
@@ -34,7 +35,7 @@ impl Pattern {
         Some(Self { colors, repeat: texture.repeat })
     }
 
-    fn has_alpha(&self) -> bool {
+    pub fn has_alpha(&self) -> bool {
         matches!(self.colors, Colors::WithAlpha(_))
     }
 
@@ -123,25 +124,22 @@ impl Background {
     }
 }
 
-impl World {
-    /// Finds the patterns of all materials.
-    pub(super) fn find_patterns(&mut self, scene: &Scene) -> Result<(), Vec<Problem>> {
-        for (name, texture) in &scene.textures {
-            let unread = || {
-                let place = ["texture", name, "image"].map(Step::from).to_vec();
-                vec![Problem { place, message: "this picture has not been read".to_owned(), help: None }]
-            };
-            self.patterns.push(Pattern::new(texture, self.has_media).ok_or_else(unread)?);
-        }
-        let of = |m: &Material| m.texture.as_ref().and_then(|name| scene.textures.get_index_of(name));
-        self.pattern_of = self.materials.iter().map(|m| of(m).map(|at| at as u32)).collect();
-        self.has_alpha = self.patterns.iter().any(Pattern::has_alpha);
-        Ok(())
-    }
+/// The patterns of all textures, in their order.
+pub(super) fn patterns(scene: &Scene, has_media: bool) -> Result<Vec<Pattern>, Vec<Problem>> {
+    let of = |(name, texture): (&String, &Texture)| {
+        let unread = || {
+            let place = ["texture", name, "image"].map(Step::from).to_vec();
+            vec![Problem { place, message: "this picture has not been read".to_owned(), help: None }]
+        };
+        Pattern::new(texture, has_media).ok_or_else(unread)
+    };
+    scene.textures.iter().map(of).collect()
+}
 
+impl World {
     /// Are there places on this material where not all of it is there?
     pub(crate) fn has_holes(&self, material: u32) -> bool {
-        self.has_alpha && self.texture_of(material).is_some_and(|pattern| self.patterns[pattern as usize].has_alpha())
+        self.materials[material as usize].has_holes
     }
 
     /// How much of a surface is there at a point, from 0 to 1: its coverage.
@@ -151,7 +149,8 @@ impl World {
 
     /// The pattern on a material.
     pub(super) fn texture_of(&self, material: u32) -> Option<u32> {
-        self.pattern_of.get(material as usize).copied().flatten()
+        let pattern = self.materials[material as usize].pattern;
+        (pattern != NONE).then_some(pattern)
     }
 
     /// By what the colour of a surface is multiplied at a point on it, and how much of the surface is there.

@@ -1,0 +1,196 @@
+//! A picture in steps, in passes, and in parts of its samples that are merged: always the bits of the whole.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
+use snell::film::{Crop, Film, Rgb};
+use snell::render::{Accumulator, LaneWidth, Options, Passes, RenderError, Renderer, Settings, accumulate, render};
+use snell::scene::{Integrator, Scene};
+use snell::trace::Statistics;
+use snell::world::World;
+use snell_test_scenes::lecture;
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+
+/// Glass that disperses, with light that is lost.
+fn glass(spp: u32) -> Scene {
+    let mut scene = lecture("gallery/prism", 1);
+    (scene.render.size, scene.render.spp, scene.render.max_depth, scene.render.bands) = ([13, 11], spp, 4, 3);
+    scene
+}
+
+fn whole(scene: &Scene) -> (Film, Statistics) {
+    let options = Options { threads: 1, ..Options::default() };
+    let rendered = render(&World::new(scene).unwrap(), &Settings::of(scene), &options).unwrap();
+    (rendered.film, rendered.statistics)
+}
+
+/// Numbers that are the same in every run (Knuth's MMIX).
+struct Numbers(u64);
+
+impl Numbers {
+    fn below(&mut self, end: u32) -> u32 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        ((self.0 >> 33) % u64::from(end)) as u32
+    }
+}
+
+/// As it goes from machine to machine.
+fn sent(accumulator: &Accumulator) -> Accumulator {
+    postcard::from_bytes(&postcard::to_allocvec(accumulator).unwrap()).unwrap()
+}
+
+#[test]
+fn samples_in_any_parts_and_any_order_merge_to_the_bits_of_the_whole() {
+    let mut numbers = Numbers(1);
+    for spp in [1, 2, 3, 5, 8, 13, 64] {
+        let scene = glass(spp);
+        let (film, statistics) = whole(&scene);
+        assert!(statistics.lost.rays > 0, "nothing is lost");
+        let (world, settings) = (World::new(&scene).unwrap(), Settings::of(&scene));
+        for round in 0..6 {
+            let (mut parts, mut first) = (Vec::new(), 0);
+            while first < spp {
+                let most = if round == 0 { 1 } else { 64 };
+                let end = spp.min(first + 1 + numbers.below(most));
+                let lanes = LaneWidth::ALL[numbers.below(4) as usize];
+                let [threads, tile_size] = [[1, 2][numbers.below(2) as usize], 3 + numbers.below(30)];
+                let passes = [Passes::WholeTiles, Passes::CoarseToFine { coarsest: 4 }][numbers.below(2) as usize];
+                let samples = Some([first, end]);
+                let options =
+                    Options { samples, lanes, threads: threads as usize, tile_size, passes, ..Options::default() };
+                parts.push(sent(&accumulate(&world, &settings, &options).unwrap()));
+                first = end;
+            }
+            // Two at a time, as in a tree of merges, in any order.
+            while parts.len() > 1 {
+                let part = parts.swap_remove(numbers.below(parts.len() as u32) as usize);
+                let to = numbers.below(parts.len() as u32) as usize;
+                parts[to].merge(part).unwrap();
+                parts[to] = sent(&parts[to]);
+            }
+            let merged = parts.remove(0);
+            assert!(merged.film().unwrap().unwrap() == film, "{spp} samples, round {round}");
+            assert_eq!(merged.statistics(), statistics, "{spp} samples, round {round}");
+            assert_eq!(merged.samples(), Vec::from([0..u64::from(spp)]));
+        }
+    }
+}
+
+#[test]
+fn a_part_that_is_missing_or_there_twice_makes_no_picture() {
+    let scene = glass(5);
+    let (world, settings) = (World::new(&scene).unwrap(), Settings::of(&scene));
+    let part = |first: u32, end: u32| {
+        accumulate(&world, &settings, &Options { samples: Some([first, end]), ..Options::default() }).unwrap()
+    };
+    let mut merged = part(0, 2);
+    merged.merge(part(3, 5)).unwrap();
+    assert_eq!((merged.samples(), merged.film().unwrap().is_none()), (vec![0..2, 3..5], true));
+    assert_eq!(merged.merge(part(1, 4)).unwrap_err().to_string(), "the samples 1 to 1 are there twice");
+    let options = |samples| Options { samples: Some(samples), ..Options::default() };
+    for samples in [[0, 6], [3, 3], [4, 2]] {
+        let refused = render(&world, &settings, &options(samples)).unwrap_err();
+        assert!(matches!(refused, RenderError::SamplesOutside { .. }), "{samples:?}: {refused}");
+    }
+}
+
+#[test]
+fn steps_from_coarse_to_fine_end_in_the_same_picture() {
+    for (name, spp, crop) in [
+        ("lecture/default", 1, None),
+        ("gallery/ball", 5, None),
+        ("gallery/ball", 1, Some(Crop { x: 3, y: 5, width: 31, height: 17 })),
+    ] {
+        let mut scene = lecture(name, 40);
+        scene.render.spp = spp;
+        let (world, settings) = (World::new(&scene).unwrap(), Settings::of(&scene));
+        let expected = render(&world, &settings, &Options { crop, ..Options::default() }).unwrap();
+        for (coarsest, tiles, threads) in [(1, 1, 1), (8, 1, 1), (8, 3, 2), (64, 100, 2), (7, 2, 1)] {
+            let passes = Passes::CoarseToFine { coarsest };
+            let options = Options { crop, passes, tile_size: 8, threads, ..Options::default() };
+            let mut renderer = Renderer::new(&world, &settings, &options).unwrap();
+            let mut before = renderer.film().clone();
+            while !renderer.is_finished() {
+                let changed = renderer.step(tiles);
+                assert!(!changed.is_empty() && changed.len() as u64 <= tiles, "{name}: {changed:?}");
+                // What has changed is where it says.
+                let film = renderer.film();
+                let within = |x: u32, y: u32| {
+                    changed.iter().any(|t| {
+                        let spans = |start: u32, count: u32, at: u32| (start..start + count * t.step).contains(&at);
+                        spans(t.x, t.width, x) && spans(t.y, t.height, y)
+                    })
+                };
+                for (at, (new, old)) in film.pixels.iter().zip(&before.pixels).enumerate() {
+                    let [x, y] = [at % film.width(), at / film.width()].map(|c| c as u32);
+                    assert!(new == old || within(film.crop.x + x, film.crop.y + y), "{name}, {passes:?} at {x},{y}");
+                }
+                before = film.clone();
+            }
+            assert!(*renderer.film() == expected.film, "{name}, {passes:?}, {tiles} tiles a step");
+            assert_eq!(renderer.statistics(), expected.statistics, "{name}, {passes:?}");
+            assert!(renderer.step(1).is_empty());
+        }
+    }
+}
+
+#[test]
+fn the_first_pass_already_fills_the_picture() {
+    let mut scene = lecture("lecture/default", 40);
+    scene.sky = None;
+    scene.ambient = Rgb::gray(1.0);
+    let (world, settings) = (World::new(&scene).unwrap(), Settings::of(&scene));
+    let full = render(&world, &settings, &Options::default()).unwrap().film;
+    let passes = Passes::CoarseToFine { coarsest: 8 };
+    let mut renderer = Renderer::new(&world, &settings, &Options { passes, ..Options::default() }).unwrap();
+    renderer.step(1);
+    let film = renderer.film();
+    assert_eq!(film.finished.iter().filter(|&&finished| finished).count(), 25);
+    for (at, pixel) in film.pixels.iter().enumerate() {
+        let [x, y] = [at % 40, at / 40].map(|c| c / 8 * 8);
+        assert_eq!(*pixel, full.pixels[y * 40 + x]);
+    }
+}
+
+#[test]
+fn what_was_cancelled_goes_on_to_the_same_picture_and_statistics() {
+    let scene = glass(3);
+    let (film, statistics) = whole(&scene);
+    let (world, settings) = (World::new(&scene).unwrap(), Settings::of(&scene));
+    for passes in [Passes::WholeTiles, Passes::CoarseToFine { coarsest: 4 }] {
+        let (cancel, calls) = (AtomicBool::new(false), AtomicU32::new(0));
+        // Every second tile tells the others to stop, wherever they are.
+        let progress = |_| {
+            if calls.fetch_add(1, Ordering::Relaxed) % 2 == 1 {
+                cancel.store(true, Ordering::Relaxed);
+            }
+        };
+        let options = Options {
+            threads: 2,
+            tile_size: 4,
+            passes,
+            progress: Some(&progress),
+            cancel: Some(&cancel),
+            ..Options::default()
+        };
+        let mut renderer = Renderer::new(&world, &settings, &options).unwrap();
+        let mut stops = 0;
+        while !renderer.is_finished() {
+            renderer.step(u64::MAX);
+            stops += u32::from(cancel.swap(false, Ordering::Relaxed));
+        }
+        assert!(stops > 3, "stopped {stops} times");
+        assert!(*renderer.film() == film, "{passes:?}");
+        assert_eq!(renderer.statistics(), statistics, "{passes:?}");
+    }
+}
+
+#[test]
+fn a_world_is_rendered_with_the_models_of_light_it_was_compiled_for() {
+    let scene = lecture("lecture/default", 8);
+    let world = World::new(&scene).unwrap();
+    let other = |integrator| Settings { integrator, ..Settings::of(&scene) };
+    assert!(render(&world, &other(Integrator::Course2020), &Options::default()).is_ok());
+    let refused = render(&world, &other(Integrator::Whitted), &Options::default()).unwrap_err();
+    assert!(refused.to_string().contains("Whitted"), "{refused}");
+    assert!(snell::render::trace_pixel(&world, &other(Integrator::Whitted), 1, 1).is_none());
+}
