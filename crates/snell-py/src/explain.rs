@@ -9,12 +9,9 @@ use pyo3::prelude::*;
 use snell::explain::text::{Style, text};
 use snell::explain::{Explanation, Names, Sightings, explain, find as find_object};
 use snell_formats::figure::figure;
-use snell_formats::page::page;
+use snell_formats::page::{VIEWER, page};
 use snell_formats::report::known_names;
 use std::sync::Arc;
-
-/// The viewer, built from `viewer/` by `npm run bundle`.
-const VIEWER: &str = include_str!("../../snell-cli/assets/snell-viewer.js");
 
 /// The viewer as a script, for notebooks.
 #[pyfunction]
@@ -60,7 +57,7 @@ impl NativeTree {
     /// The page with the rays in 3D.
     fn html(&self, py: Python<'_>) -> String {
         let names = Names { world: &self.ready.world, scene: &self.ready.scene };
-        py.detach(|| page(&self.explanation, &names, VIEWER))
+        py.detach(|| page(&self.explanation, &names))
     }
 }
 

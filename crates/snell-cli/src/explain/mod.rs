@@ -22,9 +22,6 @@ use snell_formats::report::known_names;
 use snell_formats::{Report, disk};
 use std::path::Path;
 
-/// The viewer, built from `viewer/` by `npm run bundle`.
-const VIEWER: &str = include_str!("../../assets/snell-viewer.js");
-
 /// What is explained: a scene as a command line asks for it.
 struct Asked {
     recipe: Recipe,
@@ -110,7 +107,7 @@ pub fn run(args: &ExplainArgs) -> Outcome {
         return print(&asked, &light::text(&explanation, light));
     }
     if let Some(file) = &args.html {
-        return write(file, &page(&explanation, &asked.names(), VIEWER));
+        return write(file, &page(&explanation, &asked.names()));
     }
     if let Some(file) = &args.svg {
         return write(file, &figure(&explanation));
