@@ -4,6 +4,7 @@
 //! | --- | --- |
 //! | [`load`](mod@load): scene files (TOML, JSON), the course's driver files, NFF, their models (OBJ, PLY, STL) | [`scene_file`]: TOML, JSON, the JSON Schema; [`model`]: OBJ |
 //! | [`picture`]: PNG, PPM, EXR, NPY, to compare or to read the recipe; as [`texture`]s | [`picture`]: the same |
+//! | [`recipe`]: how a picture was made | the same |
 //!
 //! Whatever is wrong with a file becomes a [`Report`] with the place, what was read, what was expected and what to do.
 
@@ -18,6 +19,7 @@ pub mod model;
 pub mod nff;
 pub mod page;
 pub mod picture;
+pub mod recipe;
 pub mod report;
 pub mod scene_file;
 pub mod text;

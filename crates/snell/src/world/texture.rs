@@ -129,7 +129,7 @@ impl World {
         for (name, texture) in &scene.textures {
             let unread = || {
                 let place = ["texture", name, "image"].map(Step::from).to_vec();
-                vec![Problem { place, message: "this picture has not been read".to_owned(), help: None }]
+                vec![Problem { place, message: "this picture has not been read".to_owned(), help: None, remedy: None }]
             };
             self.patterns.push(Pattern::new(texture, scene.render.integrator).ok_or_else(unread)?);
         }
