@@ -1,7 +1,7 @@
 # Everything goes through these. What they need is installed without asking; what cannot be is named.
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test soak fuzz bench bench-peers pictures notebooks clean
+.PHONY: help demo test soak fuzz bench bench-peers schemas pictures notebooks clean
 
 help: ## This list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-11s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -23,6 +23,9 @@ bench: ## Time kernels, trees, rays and pictures (BASELINE=name saves, AGAINST=n
 
 bench-peers: ## Compare with POV-Ray and Embree where they are installed, and measure how cost grows
 	@scripts/bench-peers.sh
+
+schemas: ## Write the JSON Schemas anew, and the types that are made of them
+	@scripts/schemas.sh
 
 pictures: ## Render the pictures of the documentation anew
 	@scripts/pictures.sh
