@@ -1,7 +1,7 @@
 # Everything goes through these. What they need is installed without asking; what cannot be is named.
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test soak fuzz bench bench-counts bench-peers pictures notebooks clean
+.PHONY: help demo test soak fuzz bench bench-counts bench-peers schemas pictures notebooks clean
 
 help: ## This list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -26,6 +26,9 @@ bench-counts: ## Count instructions under valgrind (BASELINE=1 saves, ONLY=galle
 
 bench-peers: ## Compare with POV-Ray and Embree where they are installed, and measure how cost grows
 	@scripts/bench-peers.sh
+
+schemas: ## Write the JSON Schemas anew, and the types that are made of them
+	@scripts/schemas.sh
 
 pictures: ## Render the pictures of the documentation anew
 	@scripts/pictures.sh

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import html
 import json
 import os
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -167,7 +165,7 @@ class RayTree:
         for number in (top, depth):
             if number is not None and not 0 <= number < 2**32:
                 raise PictureError([("text", f"expected a number from 0 to 4294967295, read {number}", None)])
-        return self._native.text(top, depth, False)
+        return self._native.text(top, depth)
 
     def to_json(self) -> str:
         """Return the JSON form, version 1."""
@@ -207,13 +205,7 @@ class RayTree:
         return f"<RayTree of pixel {self.pixel[0]},{self.pixel[1]} of {self.scene}>"
 
     def _repr_html_(self) -> str:
-        patch = r'<span style="background:rgb(\1,\2,\3);border-radius:2px">&nbsp;&nbsp;</span>'
-        text = html.escape(self._native.text(None, None, True))
-        return f"<pre>{_TERMINAL_PATCH.sub(patch, text)}</pre>"
-
-
-#: Two blanks on a coloured ground, as terminals write them.
-_TERMINAL_PATCH = re.compile("\x1b\\[48;2;([0-9]+);([0-9]+);([0-9]+)m  \x1b\\[0m")
+        return self._native.text_html()
 
 
 def _tuples(table: Mapping[str, Any]) -> dict[str, Any]:

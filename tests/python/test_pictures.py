@@ -122,8 +122,9 @@ def test_contributions_add_up_to_the_pixel(name: str, width: int) -> None:
 
 def test_a_tree_has_all_forms(tmp_path: Path) -> None:
     tree = snell.scenes["lecture/default"].render().explain(190, 300)
+    few = tree.text(top=1, depth=1).replace("text(top=N, depth=N) shows", "--top N and --depth N show")
     assert tree.text() == command("explain", "lecture/default", "190,300")
-    assert tree.text(top=1, depth=1) == command("explain", "lecture/default", "190,300", "--top", "1", "--depth", "1")
+    assert few == command("explain", "lecture/default", "190,300", "--top", "1", "--depth", "1")
     assert tree.to_json() == command("explain", "lecture/default", "190,300", "--json").strip()
     command("explain", "lecture/default", "190,300", "--html", str(tmp_path / "command.html"))
     tree.save(tmp_path / "python.html")

@@ -60,7 +60,7 @@ function checkScene(value: unknown): void {
     if (light.position === null) triple(light.direction, `${path}.direction`);
     else triple(light.position, `${path}.position`);
   });
-  if (scene.transfer !== undefined) choice(scene.transfer, TRANSFERS, 'scene.transfer');
+  choice(scene.transfer, TRANSFERS, 'scene.transfer');
 }
 
 function surface(value: unknown, path: string): Fields {
@@ -111,7 +111,7 @@ function checkHit(value: unknown, path: string): void {
   const hit = fields(value, path);
   for (const key of ['object', 'material']) text(hit[key], `${path}.${key}`);
   for (const key of ['primitive', 't', 'angle_in', 'eta_before', 'eta_behind']) number(hit[key], `${path}.${key}`);
-  for (const key of ['point', 'normal']) triple(hit[key], `${path}.${key}`);
+  for (const key of ['point', 'normal', 'throughput']) triple(hit[key], `${path}.${key}`);
   optional(number)(hit.angle_out, `${path}.angle_out`);
   flag(hit.total_reflection, `${path}.total_reflection`);
 }
@@ -126,6 +126,7 @@ function checkLocal(value: unknown, path: string): void {
     for (const key of ['facing', 'at_infinity']) flag(light[key], `${at}.${key}`);
     for (const key of ['transmittance', 'diffuse', 'highlight', 'point']) triple(light[key], `${at}.${key}`);
     optional(text)(light.blocked_by, `${at}.blocked_by`);
+    list(light.through, `${at}.through`, text);
     optional(triple)(light.block_point, `${at}.block_point`);
   });
 }

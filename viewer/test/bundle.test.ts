@@ -2,7 +2,7 @@ import { existsSync, readFileSync } from 'node:fs';
 import { expect, test } from 'vitest';
 
 const built = new URL('../dist/snell-viewer.js', import.meta.url);
-const committed = new URL('../../crates/snell-cli/assets/snell-viewer.js', import.meta.url);
+const committed = new URL('../../crates/snell-formats/assets/snell-viewer.js', import.meta.url);
 
 test('the copy that the command embeds is a fresh build', () => {
   expect(existsSync(committed), 'run `npm run bundle`').toBe(true);

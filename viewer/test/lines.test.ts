@@ -20,7 +20,7 @@ test('what a model goes through in one step is a line of its own', () => {
 
 test('shadow rays go to the light, or to what blocks it', () => {
   const light: LightAtHit = {
-    name: 'lamp', facing: true, transmittance: [1, 1, 1], blocked_by: null, block_point: null,
+    name: 'lamp', facing: true, transmittance: [1, 1, 1], blocked_by: null, block_point: null, through: [],
     diffuse: [0, 0, 0], highlight: [0, 0, 0], point: [1, 2, 3], at_infinity: false,
   };
   const lines = (changes: Partial<LightAtHit>) => {

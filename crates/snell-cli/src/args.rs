@@ -11,6 +11,7 @@ use snell::lanes::LaneWidth;
 use snell::scene::{Integrator, MAX_DEPTH, MAX_SPP, Rounding, Shadows, Transfer};
 use snell_formats::builtin::SCENES;
 use snell_formats::driver::Dialect;
+use snell_formats::schema::Form;
 use std::ffi::OsStr;
 use std::path::PathBuf;
 
@@ -42,8 +43,11 @@ pub enum Command {
     Convert(ConvertArgs),
     Diff(DiffArgs),
     Check(CheckArgs),
-    /// Print the JSON Schema of scene files, for editors
-    Schema,
+    /// Print a JSON Schema: of scene files, for editors; of ray trees (`snell explain --json`); or of what the viewer shows
+    Schema {
+        #[arg(value_name = "FORM", default_value = "scene", value_parser = form)]
+        form: Form,
+    },
     /// Print completions for a shell
     #[command(after_help = "Example:\n  snell completions bash > ~/.local/share/bash-completion/completions/snell")]
     Completions {
@@ -400,6 +404,11 @@ fn dialect(text: &str) -> Result<Dialect, String> {
     let text = if text == "2017" { "2018" } else { text };
     let found = Dialect::ALL.into_iter().find(|d| d.name() == text);
     found.ok_or_else(|| format!("expected one of {}", names.join(", ")))
+}
+
+fn form(text: &str) -> Result<Form, String> {
+    let found = Form::ALL.into_iter().find(|form| form.name() == text);
+    found.ok_or_else(|| format!("expected one of {}", Form::ALL.map(Form::name).join(", ")))
 }
 
 fn bits(text: &str) -> Result<u8, String> {

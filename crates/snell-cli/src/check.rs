@@ -40,7 +40,7 @@ fn one_model(args: &CheckArgs, path: &Path) -> Outcome {
     let Model { mesh, libraries, lost_uv, mut warnings, .. } = parse_model(path, &bytes).or_fail(SCENE)?;
     drop(bytes);
     // Of no matter here.
-    warnings.extend(lost_uv.map(|report| Report { warning: Some(WarningCode::NotDrawn.code()), ..report }));
+    warnings.extend(lost_uv.map(|report| Report { warning: Some(WarningCode::NotDrawn), ..report }));
     say::reports(&warnings);
     let findings = check(&mesh);
     let Some(output) = &args.output else {

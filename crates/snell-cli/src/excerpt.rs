@@ -1,5 +1,6 @@
 //! The lines around the place of a report, cut to a width that a person can read.
 
+use crate::say::help;
 use miette::{
     Diagnostic, LabeledSpan, MietteError, MietteSpanContents, Severity, SourceCode, SourceSpan, SpanContents,
 };
@@ -100,7 +101,7 @@ impl Diagnostic for Excerpt<'_> {
         Some(if self.report.warning.is_some() { Severity::Warning } else { Severity::Error })
     }
     fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
-        self.report.help.as_deref().map(|help| Box::new(plain(help)) as Box<dyn fmt::Display>)
+        help(self.report).map(|help| Box::new(plain(&help)) as Box<dyn fmt::Display>)
     }
     fn source_code(&self) -> Option<&dyn SourceCode> {
         self.lines.as_ref().map(|lines| lines as &dyn SourceCode)

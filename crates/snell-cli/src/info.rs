@@ -4,7 +4,6 @@ use crate::args::InfoArgs;
 use crate::excerpt::plain;
 use crate::input::{self, what_is};
 use crate::progress::short;
-use crate::recipe::Recipe;
 use crate::say::{self, FAILED, Failure, OrFail, Outcome, SCENE};
 use snell::explain::text::six_digits;
 use snell::geometry::Vec3;
@@ -13,6 +12,7 @@ use snell::world::World;
 use snell_formats::given::Given;
 use snell_formats::load::Loaded;
 use snell_formats::picture::{self, Picture};
+use snell_formats::recipe::Recipe;
 use snell_formats::text::decode;
 use snell_formats::{LoadOptions, Report, disk};
 use std::fmt::Write;
@@ -53,7 +53,7 @@ fn print_text(text: &str) -> Outcome {
 fn about_picture(picture: &Picture, args: &InfoArgs) -> Outcome {
     let bits = picture.max.map_or("floating point".to_owned(), |max| format!("0 to {max}"));
     let mut text = format!("{}: {} x {} pixels, {bits}\n", args.file, picture.width, picture.height);
-    let recipe = picture.recipe.as_ref().and_then(|r| serde_json::from_str::<Recipe>(r).ok());
+    let recipe = picture.recipe.as_ref().and_then(|r| Recipe::from_json(r).ok());
     let Some(recipe) = recipe else {
         if args.scene {
             let report = Report::error(format!("`{}` does not say how it was made", args.file));

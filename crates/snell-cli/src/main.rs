@@ -71,7 +71,7 @@ fn run(command: Command) -> Outcome {
         Command::Convert(args) => convert::run(&args),
         Command::Diff(args) => diff::run(&args),
         Command::Check(args) => check::run(&args),
-        Command::Schema => say::print(&snell_formats::scene_file::schema()),
+        Command::Schema { form } => say::print(&form.schema()),
         Command::Completions { shell } => {
             let mut script = Vec::new();
             clap_complete::generate(shell, &mut Arguments::command(), "snell", &mut script);

@@ -3,16 +3,17 @@
 use crate::args::{ProgressKind, RenderArgs};
 use crate::output;
 use crate::progress::Reporter;
-use crate::recipe::Recipe;
+use crate::recipe::same_film;
 use crate::say::{FAILED, Failure, Outcome, USAGE, tell};
 use snell::explain::{Path as Way, layers, only};
 use snell::film::{Crop, Film, Rgb};
 use snell::render::Options;
 use snell::world::World;
+use snell_formats::Report;
 use snell_formats::load::Loaded;
 use snell_formats::picture::{self, Format};
+use snell_formats::recipe::Recipe;
 use snell_formats::report::known_names;
-use snell_formats::{Report, disk};
 use std::path::Path;
 
 /// Renders one layer for each of the strongest ways, or one way only.
@@ -45,9 +46,10 @@ pub fn run(
         say(args, &format!("{}: {way}, in {seen} of {} pixels", output::shown(output), pixels.len()));
         let film = film([width, height], pixels)?;
         let encoding = loaded.scene.render.encoding();
-        let text = remembered(&mut recipe, &film);
+        recipe.remember(&film);
+        let text = recipe.to_json();
         output::write(output, |out| picture::write_to(out, format, &film, encoding, Some(&text)))?;
-        return recipe.same_film(before.as_deref());
+        return same_film(&recipe, before.as_deref());
     }
     let most = recipe.paths.unwrap_or_default() as usize;
     let split = layers(world, &loaded.scene, most, &options).unwrap_or_default();
@@ -63,16 +65,11 @@ pub fn run(
         say(args, &format!("{:5.1} %  {name}", 100.0 * share / total));
     }
     let whole = film([width, height], split.picture)?;
-    let text = remembered(&mut recipe, &whole);
+    recipe.remember(&whole);
+    let text = recipe.to_json();
     output::write(output, |out| picture::write_layers_to(out, [width, height], &whole.pixels, &named, Some(&text)))?;
     say(args, &format!("{}: {} layers that add up to the picture", output::shown(output), named.len()));
-    recipe.same_film(before.as_deref())
-}
-
-/// What the file remembers.
-fn remembered(recipe: &mut Recipe, film: &Film) -> String {
-    recipe.film_sha256 = Some(disk::sha256(film.bytes()));
-    serde_json::to_string(recipe).unwrap_or_default()
+    same_film(&recipe, before.as_deref())
 }
 
 /// The way that a text names, if all of its objects are there.

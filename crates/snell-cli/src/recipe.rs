@@ -1,104 +1,13 @@
-//! Everything that decides the bits of a picture, and that a PNG or EXR remembers.
+//! Recipes, as a command line asks for them and speaks of them.
 
 use crate::args::{ExplainArgs, ReadingArgs, RenderArgs};
 use crate::input;
 use crate::say::{FAILED, Failure, OrFail, Outcome, SCENE};
-use serde::{Deserialize, Serialize};
 use snell::explain::text::six_digits;
-use snell::film::Crop;
-use snell::scene::{Integrator, Rounding, Scene, Shadows, Transfer};
-use snell_formats::driver::Dialect;
-use snell_formats::load::{Kind, Loaded, ModelFile, load_text};
-use snell_formats::{LoadOptions, Report, Source, picture, scene_file};
+use snell_formats::load::Loaded;
+use snell_formats::recipe::{Changes, OldDefault, Recipe};
+use snell_formats::{LoadOptions, Report};
 use std::path::{Path, PathBuf};
-
-/// How a picture is made: the text of its scene and all settings besides. Once rendered, those that the text may leave out are
-/// written out, so that another default of a later version does not change the picture.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Recipe {
-    /// Version of Snell that made the picture.
-    pub snell: String,
-    /// Name of the scene: a file, or a built-in one.
-    pub name: String,
-    pub kind: Kind,
-    /// The text of the scene, as it was read.
-    pub text: String,
-    /// Folder that the names of models are relative to.
-    pub folder: PathBuf,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub dialect: Option<String>,
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub set: Vec<String>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub size: Option<[u32; 2]>,
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub stretch: bool,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub crop: Option<Crop>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub spp: Option<u32>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub seed: Option<u32>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub depth: Option<u32>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub min_throughput: Option<f64>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub bands: Option<u32>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub integrator: Option<Integrator>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub shadows: Option<Shadows>,
-    /// Where the image plane stands, if the scene does not say.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub near: Option<f64>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub transfer: Option<Transfer>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub rounding: Option<Rounding>,
-    /// Bits per channel of a PNG, 8 if left out.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub bits: Option<u8>,
-    /// Layers for so many ways of light.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub paths: Option<u32>,
-    /// Only the light of this way.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub only: Option<String>,
-    /// Folders in which models were looked for first.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub search: Vec<PathBuf>,
-    /// Models that the scene reads, in the order of reading, and their content.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub models: Vec<ModelFile>,
-    /// Did nobody ask for these shadows? They are what the default was when the picture was made.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    default_shadows: bool,
-    /// Is it from when pictures did not remember the shadows that nobody asked for, or where the image plane stood?
-    #[serde(skip)]
-    is_old: [bool; 2],
-    /// SHA-256 of the finished film's numbers.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub film_sha256: Option<String>,
-}
-
-/// What a command line asks to be other than in a scene, or in a recipe.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Changes {
-    pub set: Vec<String>,
-    pub size: Option<[u32; 2]>,
-    pub stretch: bool,
-    pub crop: Option<Crop>,
-    pub spp: Option<u32>,
-    pub depth: Option<u32>,
-    pub integrator: Option<Integrator>,
-    pub shadows: Option<Shadows>,
-    pub transfer: Option<Transfer>,
-    pub rounding: Option<Rounding>,
-    pub bits: Option<u8>,
-    pub paths: Option<u32>,
-    pub only: Option<String>,
-}
 
 impl From<&RenderArgs> for Changes {
     fn from(args: &RenderArgs) -> Self {
@@ -133,258 +42,63 @@ impl From<&ExplainArgs> for Changes {
     }
 }
 
-impl Recipe {
-    /// Reads a scene, as a command line asks for it, and notes how it was read.
-    pub fn of(name: &str, reading: &ReadingArgs, changes: &Changes) -> Result<(Self, Loaded), Failure> {
-        let options =
-            LoadOptions { set: changes.set.clone(), integrator: changes.integrator, ..LoadOptions::from(reading) };
-        let loaded = input::scene(name, &options)?;
-        // Only models need it; otherwise a picture need not tell where it was made.
-        let (folder, search) = if loaded.models.is_empty() {
-            (PathBuf::from("."), Vec::new())
-        } else {
-            (absolute(&loaded.folder), options.search.iter().map(|folder| absolute(folder)).collect())
-        };
-        let mut recipe = Self {
-            snell: env!("CARGO_PKG_VERSION").to_owned(),
-            name: if loaded.path.is_some() { name.to_owned() } else { loaded.source.name.to_string() },
-            kind: loaded.kind,
-            text: loaded.source.text.to_string(),
-            folder,
-            dialect: reading.dialect.map(|d| d.name().to_owned()),
-            set: Vec::new(),
-            size: None,
-            stretch: false,
-            crop: None,
-            spp: None,
-            seed: None,
-            depth: None,
-            min_throughput: None,
-            bands: None,
-            integrator: None,
-            shadows: None,
-            near: None,
-            transfer: None,
-            rounding: None,
-            bits: None,
-            paths: None,
-            only: None,
-            search,
-            models: loaded
-                .models
-                .iter()
-                .map(|m| ModelFile { path: absolute(&m.path), sha256: m.sha256.clone() })
-                .collect(),
-            default_shadows: false,
-            is_old: [false; 2],
-            film_sha256: None,
-        };
-        recipe.change(changes);
-        Ok((recipe, loaded))
-    }
+/// Reads a scene, and notes how it was read.
+pub fn of_scene(name: &str, reading: &ReadingArgs, changes: &Changes) -> Result<(Recipe, Loaded), Failure> {
+    let options =
+        LoadOptions { set: changes.set.clone(), integrator: changes.integrator, ..LoadOptions::from(reading) };
+    let loaded = input::scene(name, &options)?;
+    Ok((Recipe::of(&loaded, &options, changes), loaded))
+}
 
-    /// What a picture remembers.
-    pub fn in_picture(path: &Path) -> Result<Self, Failure> {
-        let remembered = picture::read(path).or_fail(FAILED)?.recipe.ok_or_else(|| {
-            let report = Report::error(format!("`{}` does not say how it was made", path.display()));
-            Failure::new(FAILED, report.help("only PNG and EXR pictures made by Snell do"))
-        })?;
-        let mut recipe: Self = serde_json::from_str(&remembered).map_err(|e| {
-            Failure::new(FAILED, Report::error(format!("the recipe in `{}` cannot be read: {e}", path.display())))
-        })?;
-        recipe.is_old = [recipe.shadows.is_none(), recipe.near.is_none()];
-        Ok(recipe)
-    }
+/// Reads the scene of a picture again, with changes. The third are notes on defaults that have changed since.
+pub fn of_picture(
+    path: &Path,
+    search: &[PathBuf],
+    changes: &Changes,
+) -> Result<(Recipe, Loaded, Vec<&'static str>), Failure> {
+    let mut recipe = Recipe::in_picture(path).or_fail(FAILED)?;
+    recipe.change(changes);
+    let loaded = recipe.load(search).or_fail(SCENE)?;
+    let notes = recipe.keep_old_defaults(&loaded.scene).into_iter().map(note).collect();
+    Ok((recipe, loaded, notes))
+}
 
-    /// Takes over what is asked to be other than it was.
-    pub fn change(&mut self, changes: &Changes) {
-        let of_the_file = Changes { transfer: None, rounding: None, bits: None, ..changes.clone() };
-        if of_the_file != Changes::default() {
-            // The film will be another one.
-            self.film_sha256 = None;
+fn note(kept: OldDefault) -> &'static str {
+    match kept {
+        OldDefault::OpaqueShadows => {
+            "the picture was made when `whitted` had opaque shadows by default, and gets them again; the default is `tinted` \
+             now: to have that, render its scene (`snell info --scene` prints it) with --shadows tinted"
         }
-        for change in &changes.set {
-            self.forget(change);
-            self.set.push(change.clone());
-        }
-        if changes.size.is_some() {
-            // A part of the picture is another part of another one.
-            (self.size, self.stretch, self.crop) = (changes.size, changes.stretch, None);
-        }
-        if changes.integrator.is_some() && changes.integrator != self.integrator {
-            self.forget_default_shadows();
-        }
-        self.crop = changes.crop.or(self.crop);
-        self.spp = changes.spp.or(self.spp);
-        self.depth = changes.depth.or(self.depth);
-        self.integrator = changes.integrator.or(self.integrator);
-        self.default_shadows &= changes.shadows.is_none();
-        self.shadows = changes.shadows.or(self.shadows);
-        self.transfer = changes.transfer.or(self.transfer);
-        self.rounding = changes.rounding.or(self.rounding);
-        self.bits = changes.bits.or(self.bits);
-        if changes.paths.is_some() || changes.only.is_some() {
-            (self.paths, self.only) = (changes.paths, changes.only.clone());
+        OldDefault::ImagePlane => {
+            "the picture was made when the image plane stood at `near` = -1 by default, and stands there again; the default is \
+             a tenth of the way to `look_at` now: to have that, render its scene (`snell info --scene` prints it)"
         }
     }
+}
 
-    /// What another model of light does about shadows, if nobody says, is another thing.
-    fn forget_default_shadows(&mut self) {
-        self.shadows = self.shadows.filter(|_| !self.default_shadows);
-    }
+/// What is said of bounds that were widened.
+pub fn widened([width, height]: [u32; 2], bounds: [f64; 4]) -> String {
+    format!(
+        "{width} x {height} has another shape than the scene: to keep pixels square the bounds are widened to [{}] \
+         (--stretch leaves them)",
+        bounds.map(six_digits).join(", ")
+    )
+}
 
-    /// Lets a change of the scene decide what the recipe remembers of its settings.
-    fn forget(&mut self, change: &str) {
-        let keys = scene_file::keys(change);
-        let [table, key] = [0, 1].map(|i| keys.get(i).map_or("", String::as_str));
-        if table == "camera" {
-            self.near = None;
-        }
-        if table != "render" {
-            return;
-        }
-        let is = |name: &str| key.is_empty() || key == name;
-        if is("size") {
-            (self.size, self.crop) = (None, None);
-        }
-        if is("integrator") {
-            self.integrator = None;
-            self.forget_default_shadows();
-        }
-        if is("shadows") {
-            self.shadows = None;
-        }
-        self.spp = self.spp.filter(|_| !is("spp"));
-        self.seed = self.seed.filter(|_| !is("seed"));
-        self.depth = self.depth.filter(|_| !is("max_depth"));
-        self.min_throughput = self.min_throughput.filter(|_| !is("min_throughput"));
-        self.bands = self.bands.filter(|_| !is("bands"));
-        self.transfer = self.transfer.filter(|_| !is("transfer"));
-        self.rounding = self.rounding.filter(|_| !is("rounding"));
+/// Fails if a picture that was made again is another one.
+pub fn same_film(recipe: &Recipe, before: Option<&str>) -> Outcome {
+    if let (Some(before), Some(now)) = (before, &recipe.film_sha256)
+        && before != now
+    {
+        let message =
+            format!("the picture is not the same: film {} before, {} now", short_hash(before), short_hash(now));
+        let help = format!("it was made by Snell {}", recipe.snell);
+        return Err(Failure::new(FAILED, Report::error(message).help(help)));
     }
-
-    /// Reads the scene of a recipe again. Its models must be what they were.
-    pub fn load(&self, search: &[PathBuf]) -> Result<Loaded, Failure> {
-        let dialect = match self.dialect.as_deref() {
-            None => None,
-            Some(name) => Some(Dialect::ALL.into_iter().find(|d| d.name() == name).ok_or_else(|| {
-                Failure::new(SCENE, Report::error(format!("the picture was made with an unknown dialect `{name}`")))
-            })?),
-        };
-        let options = LoadOptions {
-            search: search.iter().chain(&self.search).cloned().collect(),
-            dialect,
-            set: self.set.clone(),
-            integrator: self.integrator,
-        };
-        let source = Source::new(self.name.as_str(), self.text.as_str());
-        let loaded = load_text(source, self.kind, &self.folder, &options).or_fail(SCENE)?;
-        // A change may change which files a scene reads, but not what is in them.
-        let changed = self.film_sha256.is_none();
-        let known = |file: &ModelFile, files: &[ModelFile]| files.iter().any(|other| other.sha256 == file.sha256);
-        let other = |now: &&ModelFile| {
-            let of_its_path = |then: &ModelFile| then.path == absolute(&now.path) && then.sha256 != now.sha256;
-            let of_its_name = |then: &ModelFile| then.path.file_name() == now.path.file_name();
-            self.models.iter().any(of_its_path)
-                || (!known(now, &self.models) && (!changed || self.models.iter().any(of_its_name)))
-        };
-        let lost = self.models.iter().find(|then| !changed && !known(then, &loaded.models));
-        let Some(file) = loaded.models.iter().find(other).or(lost) else { return Ok(loaded) };
-        let was = self.models.iter().find(|then| then.path.file_name() == file.path.file_name());
-        let was = was.map_or("it was not there".to_owned(), |m| {
-            format!("it was {} with SHA-256 {}", m.path.display(), m.sha256)
-        });
-        let message = format!("the model `{}` has changed since the picture was made", file.path.display());
-        let help = format!("{was}; if it is elsewhere now, name its folder with --search DIR");
-        Err(Failure::new(SCENE, Report::error(message).help(help)))
-    }
-
-    /// Fails if a picture that was made again is another one.
-    pub fn same_film(&self, before: Option<&str>) -> Outcome {
-        if let (Some(before), Some(now)) = (before, &self.film_sha256)
-            && before != now
-        {
-            let message =
-                format!("the picture is not the same: film {} before, {} now", short_hash(before), short_hash(now));
-            let help = format!("it was made by Snell {}", self.snell);
-            return Err(Failure::new(FAILED, Report::error(message).help(help)));
-        }
-        Ok(())
-    }
-
-    /// Takes over what the settings of the scene have come to.
-    pub fn resolve(&mut self, scene: &Scene) {
-        let render = &scene.render;
-        self.default_shadows |= self.shadows.is_none();
-        self.near = Some(scene.camera.image_plane());
-        self.spp = Some(render.spp);
-        self.seed = Some(render.seed);
-        self.depth = Some(render.max_depth);
-        self.min_throughput = Some(render.min_throughput);
-        self.bands = Some(render.bands);
-        self.integrator = Some(render.integrator);
-        self.shadows = Some(render.shadows());
-        self.transfer = Some(render.transfer);
-        self.rounding = Some(render.rounding);
-    }
-
-    /// Where neither a recipe nor its scene says, a recipe means the defaults of the Snell that made it. Writes out those that have
-    /// changed since, and returns a note about each.
-    pub fn keep_old_defaults(&mut self, scene: &Scene) -> Vec<&'static str> {
-        let integrator = self.integrator.unwrap_or(scene.render.integrator);
-        let mut notes = Vec::new();
-        let [old_shadows, old_plane] = self.is_old;
-        if old_shadows && integrator == Integrator::Whitted && self.shadows.or(scene.render.shadows).is_none() {
-            self.shadows = Some(Shadows::Opaque);
-            notes.push(
-                "the picture was made when `whitted` had opaque shadows by default, and gets them again; the default is `tinted` \
-                 now: to have that, render its scene (`snell info --scene` prints it) with --shadows tinted",
-            );
-        }
-        if old_plane && !integrator.starts_at_eye() && self.near.or(scene.camera.near).is_none() {
-            self.near = Some(-1.0);
-            notes.push(
-                "the picture was made when the image plane stood at `near` = -1 by default, and stands there again; the default is \
-                 a tenth of the way to `look_at` now: to have that, render its scene (`snell info --scene` prints it)",
-            );
-        }
-        notes
-    }
-
-    /// Puts the settings into the scene. Returns a note if the bounds were widened.
-    pub fn apply(&self, scene: &mut Scene) -> Option<String> {
-        scene.camera.near = scene.camera.near.or(self.near);
-        let render = &mut scene.render;
-        render.spp = self.spp.unwrap_or(render.spp);
-        render.seed = self.seed.unwrap_or(render.seed);
-        render.max_depth = self.depth.unwrap_or(render.max_depth);
-        render.min_throughput = self.min_throughput.unwrap_or(render.min_throughput);
-        render.bands = self.bands.unwrap_or(render.bands);
-        render.integrator = self.integrator.unwrap_or(render.integrator);
-        render.shadows = self.shadows.or(render.shadows);
-        render.transfer = self.transfer.unwrap_or(render.transfer);
-        render.rounding = self.rounding.unwrap_or(render.rounding);
-        let size = self.size?;
-        if self.stretch {
-            render.size = size;
-            return None;
-        }
-        let bounds = scene.resize(size)?.map(six_digits).join(", ");
-        Some(format!(
-            "{} x {} has another shape than the scene: to keep pixels square the bounds are widened to \
-             [{bounds}] (--stretch leaves them)",
-            size[0], size[1]
-        ))
-    }
+    Ok(())
 }
 
 /// The first digits of a hash, for people.
 pub fn short_hash(hash: &str) -> &str {
     hash.get(..12).unwrap_or(hash)
-}
-
-/// A path that a picture can remember, as text.
-fn absolute(path: &Path) -> PathBuf {
-    let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
-    path.to_string_lossy().into_owned().into()
 }

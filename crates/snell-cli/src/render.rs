@@ -5,7 +5,7 @@ use crate::input::{self, what_is};
 use crate::output::{self, beside, is_standard, refuse_inputs};
 use crate::paths;
 use crate::progress::{Phase, Reporter, short};
-use crate::recipe::{Changes, Recipe, short_hash};
+use crate::recipe::{of_picture, of_scene, same_film, short_hash, widened};
 use crate::say::{self, FAILED, Failure, INTERRUPTED, OrFail, Outcome, SCENE, USAGE, tell};
 use crate::signals;
 use serde_json::json;
@@ -18,6 +18,7 @@ use snell::world::World;
 use snell_formats::given::Given;
 use snell_formats::load::Loaded;
 use snell_formats::picture::{self, Format};
+use snell_formats::recipe::{Changes, Recipe};
 use snell_formats::{Report, disk, memory};
 use std::collections::HashMap;
 use std::io::IsTerminal;
@@ -171,7 +172,7 @@ fn keep_all_inputs(args: &RenderArgs, names: &[String], outputs: &[PathBuf]) -> 
     }
     // A pipe can be read once, and what cannot be read is told when it is its turn.
     for name in names.iter().filter(|name| !Path::new(name).exists() || Path::new(name).is_file()) {
-        let Ok((_, loaded)) = Recipe::of(name, &args.reading, &Changes::from(args)) else { continue };
+        let Ok((_, loaded)) = of_scene(name, &args.reading, &Changes::from(args)) else { continue };
         there.iter().try_for_each(|output| refuse_inputs(output, loaded.files()))?;
     }
     Ok(())
@@ -181,10 +182,8 @@ fn keep_all_inputs(args: &RenderArgs, names: &[String], outputs: &[PathBuf]) -> 
 fn read(name: &str, args: &RenderArgs) -> Result<(Recipe, Loaded), Failure> {
     let changes = Changes::from(args);
     if let Some(from) = &args.from {
-        let mut recipe = Recipe::in_picture(from)?;
-        recipe.change(&changes);
-        let loaded = recipe.load(&args.reading.search)?;
-        for note in recipe.keep_old_defaults(&loaded.scene) {
+        let (recipe, loaded, notes) = of_picture(from, &args.reading.search, &changes)?;
+        for note in notes {
             match args.progress {
                 ProgressKind::Json => tell(&json!({ "event": "note", "message": note }).to_string()),
                 ProgressKind::Auto if args.quiet => {}
@@ -193,7 +192,7 @@ fn read(name: &str, args: &RenderArgs) -> Result<(Recipe, Loaded), Failure> {
         }
         return Ok((recipe, loaded));
     }
-    Recipe::of(name, &args.reading, &changes)
+    of_scene(name, &args.reading, &changes)
 }
 
 /// A picture knows its scene, but whoever gives one instead of a scene may not mean that.
@@ -214,12 +213,13 @@ fn one(name: &str, args: &RenderArgs, output: &Path, inputs: &mut Vec<PathBuf>) 
     let read = loaded.files().chain([Path::new(&recipe.name)]).chain(input::standard(name));
     inputs.extend(read.map(Path::to_owned));
     refuse_inputs(output, inputs.iter().map(PathBuf::as_path))?;
-    let widened = recipe.apply(&mut loaded.scene);
+    let bounds = recipe.apply(&mut loaded.scene);
     recipe.resolve(&loaded.scene);
     let preparing = Phase::start(args.progress, args.quiet, "preparing", &recipe.name);
     let world = loaded.build(args.bvh, args.threads.into()).or_fail(SCENE)?;
     drop(preparing);
-    let widened = widened.map(|note| Report::warning(WarningCode::WidenedBounds, note));
+    let note = bounds.map(|bounds| widened(loaded.scene.render.size, bounds));
+    let widened = note.map(|note| Report::warning(WarningCode::WidenedBounds, note));
     let warnings: Vec<Report> = widened.into_iter().chain(loaded.warnings_with(&world)).collect();
     warn(&warnings, args);
     let format = format(output, args)?;
@@ -274,11 +274,9 @@ fn one(name: &str, args: &RenderArgs, output: &Path, inputs: &mut Vec<PathBuf>) 
     }
     let writing = Phase::start(args.progress, args.quiet, "writing", &output::shown(output));
     let before = recipe.film_sha256.take();
-    if finished {
-        recipe.film_sha256 = Some(disk::sha256(rendered.film.bytes()));
-    }
+    recipe.remember(&rendered.film);
     let encoding = loaded.scene.render.encoding();
-    let text = serde_json::to_string(&recipe).unwrap_or_default();
+    let text = recipe.to_json();
     let written = output::write(output, |out| picture::write_to(out, format, &rendered.film, encoding, Some(&text)));
     RENDERING.store(false, Ordering::Relaxed);
     drop(writing);
@@ -294,7 +292,7 @@ fn one(name: &str, args: &RenderArgs, output: &Path, inputs: &mut Vec<PathBuf>) 
     if !finished {
         return Err(Failure { code: INTERRUPTED, reports: Vec::new() });
     }
-    recipe.same_film(before.as_deref())
+    same_film(&recipe, before.as_deref())
 }
 
 /// The picture could not be written where it should go: it is kept elsewhere if possible, so that no work is lost.
@@ -335,7 +333,7 @@ fn warn(reports: &[Report], args: &RenderArgs) {
                     let (line, column) = source.line_column(range.start);
                     json!({ "file": &*source.name, "line": line, "column": column })
                 });
-                let (code, message) = (report.warning, &report.message);
+                let (code, message) = (report.warning.map(WarningCode::code), &report.message);
                 tell(&json!({ "event": "warning", "code": code, "message": message, "place": place }).to_string());
             }
         }
@@ -401,7 +399,7 @@ fn summary(
         tell("  depth 0: mirrors and glass send no rays on");
     }
     for warning in odd {
-        tell(&format!("  {warning}"));
+        tell(&format!("  {warning}{}", say::advice(warning.code)));
     }
 }
 

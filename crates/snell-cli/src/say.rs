@@ -2,7 +2,9 @@
 
 use crate::excerpt::{Excerpt, plain};
 use miette::{GraphicalReportHandler, GraphicalTheme, ThemeCharacters, ThemeStyles};
+use snell::scene::{self, WarningCode};
 use snell_formats::Report;
+use snell_formats::report::Remedy;
 use std::io::{ErrorKind, IsTerminal, Write};
 
 /// Exit code: the command did what it should and found a difference, or failed on the way.
@@ -59,7 +61,7 @@ const SHOWN_ERRORS: usize = 20;
 
 /// The reports that are shown, and a line for each kind of which more were found. Errors come last, where people look.
 pub fn shown(reports: &[Report]) -> (Vec<&Report>, Vec<String>, Vec<&Report>) {
-    let mut kinds: Vec<(&str, usize)> = Vec::new();
+    let mut kinds: Vec<(WarningCode, usize)> = Vec::new();
     let mut warnings = Vec::new();
     for report in reports {
         let Some(code) = report.warning else { continue };
@@ -72,8 +74,9 @@ pub fn shown(reports: &[Report]) -> (Vec<&Report>, Vec<String>, Vec<&Report>) {
             warnings.push(report);
         }
     }
-    let more =
-        |&(code, count): &(&str, usize)| (count > SHOWN).then(|| format!("… and {} more of {code}", count - SHOWN));
+    let more = |&(code, count): &(WarningCode, usize)| {
+        (count > SHOWN).then(|| format!("… and {} more of {}", count - SHOWN, code.code()))
+    };
     let mut lines: Vec<String> = kinds.iter().filter_map(more).collect();
     let mut errors: Vec<&Report> = reports.iter().filter(|report| report.warning.is_none()).collect();
     if errors.len() > SHOWN_ERRORS {
@@ -81,6 +84,34 @@ pub fn shown(reports: &[Report]) -> (Vec<&Report>, Vec<String>, Vec<&Report>) {
         errors.truncate(SHOWN_ERRORS);
     }
     (warnings, lines, errors)
+}
+
+/// What to do about a report: in the file, and with this command.
+pub fn help(report: &Report) -> Option<String> {
+    let here = report.remedy.as_ref().map(|remedy| match remedy {
+        Remedy::Scene(scene::Remedy::CheckMesh) => {
+            "`snell check` shows what is wrong with a model and can repair it".to_owned()
+        }
+        Remedy::Scene(scene::Remedy::RepairMesh) => "`snell check --repair` turns the faces of a model".to_owned(),
+        Remedy::ListScenes => "`snell scenes` lists the built-in ones".to_owned(),
+        Remedy::NameFolder => "name another folder with --search DIR".to_owned(),
+        Remedy::NameDialect => "say which year it is of with --dialect".to_owned(),
+        Remedy::CheckModel(file) => format!("`snell check {file}` says whether it is a solid"),
+        Remedy::MakeAgain(file) => {
+            format!("if Snell made it, `snell info {file}` says how, and `snell render --from {file}` makes it again")
+        }
+    });
+    match (&report.help, here) {
+        // Questions end with their own mark.
+        (Some(help), Some(here)) if help.ends_with('?') => Some(format!("{help} {here}")),
+        (Some(help), Some(here)) => Some(format!("{help}; {here}")),
+        (help, here) => help.clone().or(here),
+    }
+}
+
+/// What this command adds to a warning of a picture.
+pub fn advice(warning: WarningCode) -> &'static str {
+    if warning == WarningCode::StrayExit { " `snell check` shows where" } else { "" }
 }
 
 /// Writes reports to stderr.

@@ -1,6 +1,6 @@
 //! The scenes that every Snell carries: all pictures of the lecture, a view to study, and the gallery.
 
-use crate::report::{Report, Source, nearest};
+use crate::report::{Remedy, Report, Source, nearest};
 
 macro_rules! scenes {
     ($($name:literal),* $(,)?) => {
@@ -49,9 +49,8 @@ pub fn find(name: &str) -> Result<Source, Report> {
         // `ball` is short for `gallery/ball`.
         let end = SCENES.iter().map(|(n, _)| *n).find(|n| n.rsplit('/').next() == Some(name));
         let near = end.or_else(|| nearest(name, SCENES.iter().map(|(n, _)| *n)));
-        let help = near.map_or_else(String::new, |n| format!("did you mean `{n}`? "));
-        let message = format!("no built-in scene is called `{name}`");
-        Err(Report::error(message).help(help + "`snell scenes` lists the built-in ones"))
+        let report = Report::error(format!("no built-in scene is called `{name}`")).remedy(Remedy::ListScenes);
+        Err(near.into_iter().fold(report, |report, near| report.help(format!("did you mean `{near}`?"))))
     }
 }
 

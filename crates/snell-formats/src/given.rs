@@ -1,6 +1,6 @@
 //! What a file is, by its content and its name: for those who give a command a file that it does not take.
 
-use crate::report::Report;
+use crate::report::{Remedy, Report};
 use crate::text::{decode, looks_like_text};
 use crate::{model, picture};
 use std::fs::File;
@@ -140,21 +140,20 @@ fn text_of_a_kind(text: &str) -> Option<Given> {
 impl Given {
     /// Why this is no scene, and what to do with it; `None` for what may be one.
     pub fn no_scene(self, shown: &str) -> Option<Report> {
-        let help = match self {
-            Self::Text => return None,
-            Self::Model(_) => format!(
-                "name it in a scene: `[[mesh]]` with `file = \"{shown}\"` (docs/scenes.md has a whole one); \
-                 `snell check {shown}` says whether it is a solid"
-            ),
-            Self::Materials => "name the model that uses it in a scene".to_owned(),
-            Self::Picture(_) => format!(
-                "`snell info {shown}` says how it was made, and `snell render --from {shown}` makes it again, if Snell made it"
-            ),
-            Self::Foreign(_, help) => help.to_owned(),
-            Self::Bytes => "scenes are text files: TOML, JSON, drivers of the course, or NFF".to_owned(),
-        };
         let what = self.words().unwrap_or("binary data");
-        Some(with_help(Report::error(format!("`{shown}` is {what}, not a scene")), &help))
+        let report = Report::error(format!("`{shown}` is {what}, not a scene"));
+        Some(match self {
+            Self::Text => return None,
+            Self::Model(_) => report
+                .help(format!(
+                    "name it in a scene: `[[mesh]]` with `file = \"{shown}\"` (docs/scenes.md has a whole one)"
+                ))
+                .remedy(Remedy::CheckModel(shown.to_owned())),
+            Self::Materials => report.help("name the model that uses it in a scene"),
+            Self::Picture(_) => report.remedy(Remedy::MakeAgain(shown.to_owned())),
+            Self::Foreign(_, help) => with_help(report, help),
+            Self::Bytes => report.help("scenes are text files: TOML, JSON, drivers of the course, or NFF"),
+        })
     }
 
     /// Says of what Snell does not read that it does not; `None` for all else.

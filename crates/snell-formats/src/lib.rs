@@ -2,8 +2,9 @@
 //!
 //! | in | out |
 //! | --- | --- |
-//! | [`load`](mod@load): scene files (TOML, JSON), the course's driver files, NFF, their models (OBJ, PLY, STL) | [`scene_file`]: TOML, JSON, the JSON Schema; [`model`]: OBJ |
+//! | [`load`](mod@load): scene files (TOML, JSON), the course's driver files, NFF, their models (OBJ, PLY, STL) | [`scene_file`]: TOML, JSON; [`schema`]: their JSON Schema, and that of ray trees; [`model`]: OBJ |
 //! | [`picture`]: PNG, PPM, EXR, NPY, to compare or to read the recipe; as [`texture`]s | [`picture`]: the same |
+//! | [`recipe`]: how a picture was made | the same |
 //!
 //! Whatever is wrong with a file becomes a [`Report`] with the place, what was read, what was expected and what to do.
 
@@ -18,8 +19,10 @@ pub mod model;
 pub mod nff;
 pub mod page;
 pub mod picture;
+pub mod recipe;
 pub mod report;
 pub mod scene_file;
+pub mod schema;
 pub mod text;
 pub mod texture;
 mod words;

@@ -2,8 +2,11 @@
 
 use snell::explain::{Explanation, Names, ViewScene};
 
-/// A page that opens from disk. `viewer` is the script that `viewer/` is built into.
-pub fn page(explanation: &Explanation, names: &Names<'_>, viewer: &str) -> String {
+/// The viewer, one script, built from `viewer/` by `npm run bundle`.
+pub const VIEWER: &str = include_str!("../assets/snell-viewer.js");
+
+/// A page that opens from disk.
+pub fn page(explanation: &Explanation, names: &Names<'_>) -> String {
     let scene = ViewScene::of(names);
     // Nothing in a text may end the script that holds it.
     let data = |json: serde_json::Result<String>| json.unwrap_or_default().replace('<', "\\u003c");
@@ -13,7 +16,7 @@ pub fn page(explanation: &Explanation, names: &Names<'_>, viewer: &str) -> Strin
     format!(
         "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{title}</title>\n\
-         <style>body {{ margin: 0 }}</style>\n<div id=\"snell\"></div>\n<script>{viewer}</script>\n\
+         <style>body {{ margin: 0 }}</style>\n<div id=\"snell\"></div>\n<script>{VIEWER}</script>\n\
          <script>\nSnellViewer.mount(document.getElementById('snell'), {{ scene: {scene}, tree: {tree} }});\n</script>\n</html>\n"
     )
 }

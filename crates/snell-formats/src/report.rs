@@ -1,6 +1,6 @@
 //! Errors and warnings with a place in a file.
 
-use snell::scene::Problem;
+use snell::scene::{self, Problem, WarningCode};
 use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
@@ -31,28 +31,47 @@ impl Source {
     }
 }
 
+/// What helps besides a change of the file: whoever shows the report says how it is done there.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Remedy {
+    /// What the engine knows of.
+    Scene(scene::Remedy),
+    /// To look at which scenes are built in.
+    ListScenes,
+    /// To name another folder for what a scene or model reads.
+    NameFolder,
+    /// To say which year a driver is of.
+    NameDialect,
+    /// To look at whether the model in this file is a solid.
+    CheckModel(String),
+    /// To ask the picture in this file how it was made, or to make it again.
+    MakeAgain(String),
+}
+
 /// One thing that is wrong, or odd, with a file.
 #[derive(Clone, Debug)]
 pub struct Report {
     /// What was read and what was expected.
     pub message: String,
-    /// What to do about it.
+    /// What to do about it in the file.
     pub help: Option<String>,
+    /// What to do about it elsewhere.
+    pub remedy: Option<Remedy>,
     /// Where.
     pub place: Option<(Source, Range<usize>)>,
-    /// For a warning its code and name, like `W001 invisible-sphere`; `None` for an error.
-    pub warning: Option<&'static str>,
+    /// For a warning which one; `None` for an error.
+    pub warning: Option<WarningCode>,
 }
 
 impl Report {
     /// An error without a place.
     pub fn error(message: impl Into<String>) -> Self {
-        Self { message: in_short(message.into()), help: None, place: None, warning: None }
+        Self { message: in_short(message.into()), help: None, remedy: None, place: None, warning: None }
     }
 
     /// A warning without a place.
-    pub fn warning(code: snell::scene::WarningCode, message: impl Into<String>) -> Self {
-        Self { warning: Some(code.code()), ..Self::error(message) }
+    pub fn warning(code: WarningCode, message: impl Into<String>) -> Self {
+        Self { warning: Some(code), ..Self::error(message) }
     }
 
     /// The same, at a range of bytes in a text.
@@ -70,12 +89,19 @@ impl Report {
         self.help = Some(in_short(help.into()));
         self
     }
+
+    /// The same, with what helps elsewhere.
+    #[must_use]
+    pub fn remedy(mut self, remedy: Remedy) -> Self {
+        self.remedy = Some(remedy);
+        self
+    }
 }
 
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.warning {
-            Some(code) => write!(f, "{code}: {}", self.message),
+            Some(code) => write!(f, "{}: {}", code.code(), self.message),
             None => f.write_str(&self.message),
         }
     }
@@ -87,7 +113,8 @@ impl std::error::Error for Report {}
 impl From<&Problem> for Report {
     /// Without its place, which is one in a scene and not yet one in a text.
     fn from(problem: &Problem) -> Self {
-        let report = Self::error(problem.message.as_str());
+        let remedy = problem.remedy.map(Remedy::Scene);
+        let report = Self { remedy, ..Self::error(problem.message.as_str()) };
         problem.help.iter().fold(report, |report, help| report.help(help.as_str()))
     }
 }
@@ -186,7 +213,7 @@ mod tests {
     #[test]
     fn every_warning_is_documented() {
         let docs = include_str!("../../../docs/warnings.md");
-        for code in snell::scene::WarningCode::ALL {
+        for code in WarningCode::ALL {
             assert!(docs.contains(&format!("| `{}` |", code.code())), "{} is not in docs/warnings.md", code.code());
         }
     }

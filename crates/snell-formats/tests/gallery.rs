@@ -2,11 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-mod common;
-
-use common::traced;
 use snell::film::Rgb;
-use snell::render::{Options, Settings, render};
+use snell::render::{Options, Settings, render, trace_pixel};
 use snell::scene::Scene;
 use snell::trace::{Node, RayKind, RayTree};
 use snell::world::World;
@@ -15,12 +12,17 @@ use snell_formats::builtin::{SCENES, description};
 use snell_formats::scene_file::{Syntax, parse};
 use snell_test_scenes::lecture;
 
+/// The tree of a pixel of one sample.
+fn traced(scene: &Scene, world: &World, x: u32, y: u32) -> RayTree {
+    trace_pixel(world, &Settings::of(scene), x, y).unwrap().samples.remove(0)
+}
+
 /// The objects that a pixel of a built-in scene shows, from the strongest refracted or direct contribution on.
 fn shown(name: &str, size: [u32; 2], pixel: [u32; 2]) -> (Vec<String>, RayTree) {
     let mut scene = lecture(name, 1);
     scene.render.size = size;
     let world = World::new(&scene).unwrap();
-    let (_, tree) = traced(&scene, &world, pixel[0], pixel[1]);
+    let tree = traced(&scene, &world, pixel[0], pixel[1]);
     let mut nodes: Vec<_> = tree.nodes.iter().filter(|n| n.contribution.mean() > 0.0).collect();
     nodes.sort_by(|a, b| b.contribution.mean().total_cmp(&a.contribution.mean()));
     let name = |n: &&Node| {
@@ -119,7 +121,7 @@ impl Look {
     }
 
     fn tree(&self, x: u32, y: u32) -> RayTree {
-        traced(&self.scene, &self.world, x, y).1
+        traced(&self.scene, &self.world, x, y)
     }
 
     fn name(&self, node: &Node) -> &str {

@@ -1,11 +1,11 @@
 //! Real models with texture coordinates and real pictures.
 
-mod common;
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-use common::data;
 use snell::geometry::solid::{Options, repair};
 use snell_formats::model::parse_model;
 use snell_formats::read_image;
+use snell_test_scenes::real_files::data;
 
 #[test]
 fn the_cow_is_painted_all_over_and_stays_so() {

@@ -1,7 +1,8 @@
 //! Reports and problems as Python exceptions.
 
 use pyo3::prelude::*;
-use snell::scene::{Problem, Step};
+use snell::scene::{self, Problem, Step, WarningCode};
+use snell_formats::report::Remedy;
 use snell_formats::scene_file::steps_at;
 use snell_formats::{Report, Source};
 
@@ -28,7 +29,32 @@ pub fn path(steps: &[Step]) -> String {
 }
 
 pub fn problem(problem: &Problem) -> Finding {
-    (Some(path(&problem.place)), problem.message.clone(), problem.help.clone())
+    (Some(path(&problem.place)), problem.message.clone(), help(&Report::from(problem)))
+}
+
+/// What to do about a report: in the scene, and from Python or a shell.
+pub fn help(report: &Report) -> Option<String> {
+    let here = report.remedy.as_ref().and_then(|remedy| match remedy {
+        Remedy::Scene(scene::Remedy::CheckMesh) | Remedy::CheckModel(_) => {
+            Some("the command `snell check` shows what is wrong with a model and can repair it")
+        }
+        Remedy::Scene(scene::Remedy::RepairMesh) => {
+            Some("the command `snell check --repair` turns the faces of a model")
+        }
+        Remedy::ListScenes => Some("`list(snell.scenes)` names the built-in ones"),
+        // Python has no such settings.
+        Remedy::NameFolder | Remedy::NameDialect | Remedy::MakeAgain(_) => None,
+    });
+    match (&report.help, here) {
+        (Some(help), Some(here)) if help.ends_with('?') => Some(format!("{help} {here}")),
+        (Some(help), Some(here)) => Some(format!("{help}; {here}")),
+        (help, here) => help.clone().or(here.map(str::to_owned)),
+    }
+}
+
+/// What Python adds to a warning of a picture.
+pub fn advice(warning: WarningCode) -> &'static str {
+    if warning == WarningCode::StrayExit { " The command `snell check` shows where" } else { "" }
 }
 
 /// A report. In `ours`, the text that Python wrote in JSON, its place is a key; in a file a line and a column.
@@ -40,5 +66,5 @@ pub fn report(report: &Report, ours: Option<&Source>) -> Finding {
             format!("{}:{line}:{column}", source.name)
         }
     });
-    (place.filter(|place| !place.is_empty()), report.message.clone(), report.help.clone())
+    (place.filter(|place| !place.is_empty()), report.message.clone(), help(report))
 }

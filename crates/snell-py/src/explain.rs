@@ -6,15 +6,12 @@ use crate::scene::Ready;
 use crate::watch::{unless_stopped, watched};
 use numpy::PyArray2;
 use pyo3::prelude::*;
-use snell::explain::text::{Style, text};
+use snell::explain::text::{Piece, Style, text};
 use snell::explain::{Explanation, Names, Sightings, explain, find as find_object};
 use snell_formats::figure::figure;
-use snell_formats::page::page;
+use snell_formats::page::{VIEWER, page};
 use snell_formats::report::known_names;
 use std::sync::Arc;
-
-/// The viewer, built from `viewer/` by `npm run bundle`.
-const VIEWER: &str = include_str!("../../snell-cli/assets/snell-viewer.js");
 
 /// The viewer as a script, for notebooks.
 #[pyfunction]
@@ -44,12 +41,31 @@ impl NativeTree {
         serde_json::to_string(&self.explanation).unwrap_or_default()
     }
 
-    /// The tree of the command line; what is left out is as there.
-    #[pyo3(signature = (top, depth, colored))]
-    fn text(&self, top: Option<usize>, depth: Option<u32>, colored: bool) -> String {
-        let plain = Style::default();
-        let style = Style { top: top.unwrap_or(plain.top), depth: depth.unwrap_or(plain.depth), colored };
-        text(&self.explanation, style)
+    /// The tree as text, with the strongest `top` branches and `depth` bounces.
+    #[pyo3(signature = (top, depth))]
+    fn text(&self, top: Option<usize>, depth: Option<u32>) -> String {
+        let default = Style::default();
+        let style = Style { top: top.unwrap_or(default.top), depth: depth.unwrap_or(default.depth) };
+        let piece = |piece| match piece {
+            Piece::Words(words) => words,
+            Piece::Patch(_) => String::new(),
+            Piece::MoreRays(count) => more_rays(count),
+        };
+        text(&self.explanation, style).pieces.into_iter().map(piece).collect()
+    }
+
+    /// The same with patches of colour, as a part of a page.
+    fn text_html(&self) -> String {
+        let escaped = |words: &str| words.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
+        let piece = |piece| match piece {
+            Piece::Words(words) => escaped(&words),
+            Piece::Patch([r, g, b]) => {
+                format!("<span style=\"background:rgb({r},{g},{b});border-radius:2px\">&nbsp;&nbsp;</span> ")
+            }
+            Piece::MoreRays(count) => more_rays(count),
+        };
+        let words: String = text(&self.explanation, Style::default()).pieces.into_iter().map(piece).collect();
+        format!("<pre>{words}</pre>")
     }
 
     /// The drawing of the angles, as SVG.
@@ -60,8 +76,12 @@ impl NativeTree {
     /// The page with the rays in 3D.
     fn html(&self, py: Python<'_>) -> String {
         let names = Names { world: &self.ready.world, scene: &self.ready.scene };
-        py.detach(|| page(&self.explanation, &names, VIEWER))
+        py.detach(|| page(&self.explanation, &names))
     }
+}
+
+fn more_rays(count: usize) -> String {
+    format!("  … {count} more rays; text(top=N, depth=N) shows more\n")
 }
 
 /// The paths by which an object is seen, with their pixels; and for each pixel which share of it the object is.

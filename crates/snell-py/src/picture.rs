@@ -9,14 +9,15 @@ use numpy::{PyArray, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray3};
 use pyo3::exceptions::{PyKeyboardInterrupt, PyRuntimeError};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
-use serde_json::json;
 use snell::explain::{Channels, Names, ViewScene, black_picture, channels, hits};
 use snell::film::transfer::{Encoding, Rounding, Transfer};
 use snell::film::{Crop, Film, Rgb};
 use snell::render::{RenderError, Rendered, Settings, render};
 use snell::scene::Warning;
+use snell_formats::Report;
+use snell_formats::load::Kind;
 use snell_formats::picture::{self, Format};
-use snell_formats::{Report, disk};
+use snell_formats::recipe::Recipe;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
@@ -60,20 +61,13 @@ impl NativePicture {
 
     /// What `snell render --from` needs to make it again, with the settings that the scene leaves out.
     fn recipe(&self) -> String {
-        let Ready { name, text, folder, models, .. } = &*self.ready;
-        let hash = self.film.is_finished().then(|| disk::sha256(self.film.bytes()));
+        let Ready { name, scene, text, folder, models, .. } = &*self.ready;
+        let mut recipe = Recipe::new(name, Kind::Json, text, folder, models);
         let whole = self.film.crop.width == self.film.full_size[0] && self.film.crop.height == self.film.full_size[1];
-        let crop = (!whole).then_some(self.film.crop);
-        let render = &self.ready.scene.render;
-        json!({
-            "snell": env!("CARGO_PKG_VERSION"), "name": name, "kind": "json", "text": text, "folder": folder,
-            "crop": crop, "spp": render.spp, "seed": render.seed, "depth": render.max_depth,
-            "min_throughput": render.min_throughput, "bands": render.bands, "integrator": render.integrator,
-            "shadows": render.shadows(), "default_shadows": self.ready.scene.render.shadows.is_none(),
-            "near": self.ready.scene.camera.image_plane(), "transfer": render.transfer, "rounding": render.rounding,
-            "models": models, "film_sha256": hash,
-        })
-        .to_string()
+        recipe.crop = (!whole).then_some(self.film.crop);
+        recipe.resolve(scene);
+        recipe.remember(&self.film);
+        recipe.to_json()
     }
 }
 
@@ -126,7 +120,8 @@ impl NativePicture {
 
     /// What was found while rendering: number and name, and the whole text.
     fn warnings(&self) -> Vec<(&'static str, String)> {
-        self.warnings.iter().map(|warning| (warning.code.code(), warning.to_string())).collect()
+        let text = |warning: &Warning| format!("{warning}{}", errors::advice(warning.code));
+        self.warnings.iter().map(|warning| (warning.code.code(), text(warning))).collect()
     }
 
     /// As a PNG of 8 bit.

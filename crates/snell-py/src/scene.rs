@@ -98,7 +98,7 @@ fn changed(py: Python<'_>, text: String, key: String, value: String) -> PyResult
     let source = Source::new(OURS, text);
     let mut scene = scene_file::parse(&source, Syntax::Json).map_err(|report| failed(py, &[report], Some(&source)))?;
     scene_file::set(&mut scene, &format!("{key}={value}"))
-        .map_err(|report| raise(py, "SceneError", vec![(Some(key), report.message, report.help)]))?;
+        .map_err(|report| raise(py, "SceneError", vec![(Some(key), report.message.clone(), errors::help(&report))]))?;
     hand_over(py, scene).map(|(text, _)| text)
 }
 

@@ -12,6 +12,7 @@ pub mod glass;
 mod hostile;
 mod instances;
 pub mod matrix;
+pub mod real_files;
 
 pub use build::{at_size, lecture};
 pub use crowd::{crowd, far_away, hall_of_mirrors};

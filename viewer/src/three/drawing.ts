@@ -1,7 +1,7 @@
 /** The scene and the rays of one sample in 3D. */
 
 import { Raycaster, Vector2, Vector3 } from 'three';
-import type { RayNode, RayTreeDocument, Transfer, ViewScene } from '../data';
+import type { RayNode, RayTreeDocument, ViewScene } from '../data';
 import { element } from '../dom';
 import { rayLine } from '../lines';
 import type { TreeModel } from '../model';
@@ -68,9 +68,8 @@ export class Drawing {
     this.unit = unitFor(extentOf(given, strongestOf(tree)).radius);
     const scene = (this.scene = scaledScene(given, this.unit));
     this.home = this.extent = extentOf(scene, this.strongest(tree));
-    const transfer: Transfer = scene.transfer ?? tree?.transfer ?? 'srgb';
     this.stage = new Stage(new Vector3(...scene.camera.up).normalize(), this.extent.radius);
-    this.objects = new Objects(scene, transfer, this.stage.uniforms);
+    this.objects = new Objects(scene, scene.transfer, this.stage.uniforms);
     this.apparatus = new Apparatus(scene, this.extent, this.stage.uniforms);
     this.plane = new ImagePlane(scene.camera, this.stage.uniforms);
     this.names = new Names(this.extent);

@@ -1,15 +1,15 @@
 //! `--set` and `--without`: the same pixel, before and after, branch by branch.
 
-use super::{Asked, ask, colored, known_object, print};
+use super::{Asked, ask, known_object, print, shown};
 use crate::args::ExplainArgs;
 use crate::excerpt::plain;
-use crate::recipe::Changes;
 use crate::say::{OrFail, Outcome, SCENE, tell};
-use snell::explain::text::{head, mean, numbers, swatch};
+use snell::explain::text::{Text, head, mean, numbers};
 use snell::explain::{Path, by_path};
 use snell::film::Rgb;
 use snell::render::{Settings, trace_pixel};
 use snell::scene::Scene;
+use snell_formats::recipe::Changes;
 use std::fmt::Write;
 
 /// Compares a pixel of the scene with that of the scene that `args` ask for.
@@ -26,8 +26,9 @@ pub fn run(args: &ExplainArgs, changes: &Changes, pixel: [u32; 2]) -> Outcome {
     let without = args.without.as_ref().map(|object| format!("without {object}"));
     let made: Vec<String> = changes.set.iter().map(|change| format!("with {change}")).chain(without).collect();
     let made = plain(&made.join(", "));
-    let shown =
-        format!("{}{}\n{}\n", swatch(after.color, after.transfer, colored()), numbers(after.color), after.sentence);
+    let mut changed = Text::default();
+    changed.patch(after.color, after.transfer);
+    let changed = format!("{}{}\n{}\n", shown(&changed), numbers(after.color), after.sentence);
     // The change may be what makes a scene of it.
     let unchanged = Changes { set: Vec::new(), ..changes.clone() };
     let original = match ask(args, &unchanged).and_then(|original| Ok((original.pixel(pixel)?, original))) {
@@ -38,12 +39,12 @@ pub fn run(args: &ExplainArgs, changes: &Changes, pixel: [u32; 2]) -> Outcome {
             tell(&format!("note: only the pixel after the change is shown; without the change there is none{why}"));
             return print(
                 &asked,
-                &format!("{}\n{made}:\n{shown}\n{}", head(&after, colored()), table(&[], &paths(&asked, x, y))),
+                &format!("{}\n{made}:\n{changed}\n{}", shown(&head(&after)), table(&[], &paths(&asked, x, y))),
             );
         }
     };
     let (before, original) = original;
-    let text = format!("{}\n{made}:\n{shown}\n", head(&before, colored()));
+    let text = format!("{}\n{made}:\n{changed}\n", shown(&head(&before)));
     let [u, v] = before.pixel;
     print(&asked, &(text + &table(&paths(&original, u, v), &paths(&asked, x, y))))
 }

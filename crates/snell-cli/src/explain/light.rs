@@ -1,13 +1,13 @@
 //! `--light`: why a light is, or is not, on what the pixel shows.
 
-use super::colored;
+use super::shown;
 use snell::explain::Explanation;
 use snell::explain::text::{head, mean, numbers, six_digits};
 use std::fmt::Write;
 
 /// What the light does at every surface of the pixel that shows its own colour.
 pub fn text(explanation: &Explanation, name: &str) -> String {
-    let mut text = head(explanation, colored());
+    let mut text = shown(&head(explanation));
     text.push('\n');
     let mut asks = false;
     for sample in &explanation.samples {

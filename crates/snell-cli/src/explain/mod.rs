@@ -8,9 +8,9 @@ use crate::args::ExplainArgs;
 use crate::excerpt::plain;
 use crate::input::{self, what_is};
 use crate::output::{self, refuse_inputs, write_text};
-use crate::recipe::{Changes, Recipe};
+use crate::recipe::{of_picture, of_scene};
 use crate::say::{self, FAILED, Failure, OrFail, Outcome, SCENE, USAGE, tell};
-use snell::explain::text::{self, Style};
+use snell::explain::text::{Piece, Style, Text, text};
 use snell::explain::{Explanation, Names, explain};
 use snell::scene::{WarningCode, is_unprintable};
 use snell::world::World;
@@ -18,12 +18,10 @@ use snell_formats::figure::figure;
 use snell_formats::given::Given;
 use snell_formats::load::Loaded;
 use snell_formats::page::page;
+use snell_formats::recipe::{Changes, Recipe};
 use snell_formats::report::known_names;
 use snell_formats::{Report, disk};
 use std::path::Path;
-
-/// The viewer, built from `viewer/` by `npm run bundle`.
-const VIEWER: &str = include_str!("../../assets/snell-viewer.js");
 
 /// What is explained: a scene as a command line asks for it.
 struct Asked {
@@ -110,7 +108,7 @@ pub fn run(args: &ExplainArgs) -> Outcome {
         return print(&asked, &light::text(&explanation, light));
     }
     if let Some(file) = &args.html {
-        return write(file, &page(&explanation, &asked.names(), VIEWER));
+        return write(file, &page(&explanation, &asked.names()));
     }
     if let Some(file) = &args.svg {
         return write(file, &figure(&explanation));
@@ -119,23 +117,20 @@ pub fn run(args: &ExplainArgs) -> Outcome {
         return say::print(&format!("{}\n", json(&explanation)));
     }
     let default = Style::default();
-    let style =
-        Style { top: args.top.unwrap_or(default.top), depth: args.depth.unwrap_or(default.depth), colored: colored() };
-    print(&asked, &text::text(&explanation, style))
+    let style = Style { top: args.top.unwrap_or(default.top), depth: args.depth.unwrap_or(default.depth) };
+    print(&asked, &shown(&text(&explanation, style)))
 }
 
 /// Reads what is explained, of a scene or of a picture that knows its scene.
 fn ask(args: &ExplainArgs, changes: &Changes) -> Result<Asked, Failure> {
     let (mut recipe, mut loaded) = if let Given::Picture(_) = what_is(&args.scene) {
-        let mut recipe = Recipe::in_picture(Path::new(&args.scene))?;
-        recipe.change(changes);
-        let loaded = recipe.load(&args.reading.search)?;
-        for note in recipe.keep_old_defaults(&loaded.scene) {
+        let (recipe, loaded, notes) = of_picture(Path::new(&args.scene), &args.reading.search, changes)?;
+        for note in notes {
             tell(&format!("note: {note}"));
         }
         (recipe, loaded)
     } else {
-        Recipe::of(&args.scene, &args.reading, changes)?
+        of_scene(&args.scene, &args.reading, changes)?
     };
     recipe.apply(&mut loaded.scene);
     let scene = recipe.name.clone();
@@ -151,6 +146,18 @@ fn ask(args: &ExplainArgs, changes: &Changes) -> Result<Asked, Failure> {
 /// May stdout be coloured?
 fn colored() -> bool {
     say::colored(&std::io::stdout())
+}
+
+/// A text as terminals show it.
+fn shown(text: &Text) -> String {
+    let colored = colored();
+    let piece = |piece: &Piece| match piece {
+        Piece::Words(words) => words.clone(),
+        Piece::Patch([r, g, b]) if colored => format!("\x1b[48;2;{r};{g};{b}m  \x1b[0m "),
+        Piece::Patch(_) => String::new(),
+        Piece::MoreRays(count) => format!("  … {count} more rays; --top N and --depth N show more\n"),
+    };
+    text.pieces.iter().map(piece).collect()
 }
 
 /// Prints an explanation. Where names hold characters that steer a terminal, its own colours go with them.

@@ -1,6 +1,6 @@
 //! Which year a driver is from.
 
-use crate::report::Report;
+use crate::report::{Remedy, Report};
 use crate::words::{Line, number};
 use snell::scene::{Integrator, Rounding, WarningCode};
 
@@ -21,7 +21,7 @@ impl Dialect {
     /// All of them; of equally likely ones the first is taken.
     pub const ALL: [Self; 4] = [Self::Course2018, Self::Lecture, Self::Course2019, Self::Course2020];
 
-    /// Its name on the command line.
+    /// Its name.
     pub fn name(self) -> &'static str {
         match self {
             Self::Course2018 => "2018",
@@ -134,7 +134,7 @@ pub(super) fn recognise(lines: &[Line<'_>]) -> (Dialect, Vec<Report>) {
             );
             Report::warning(WarningCode::UnclearDialect, message)
                 .at(e.line.source, e.line.range())
-                .help("say which with --dialect")
+                .remedy(Remedy::NameDialect)
         })
         .collect();
     (best, warnings)

@@ -1,7 +1,7 @@
 //! From the lines of a driver to a scene.
 
 use super::dialect::{Dialect, recognise};
-use crate::report::{Report, Source, nearest};
+use crate::report::{Remedy, Report, Source, nearest};
 use crate::words::{Line, lines};
 use snell::film::Rgb;
 use snell::scene::{Camera, Light, Material, Mesh, Render, Scene, Sphere, Step, Transfer, Transform, WarningCode};
@@ -382,7 +382,8 @@ impl Reader {
             let end = source.text.trim_end().len();
             Report::error(format!("this driver has no `{what}` line"))
                 .at(source, end..end)
-                .help(format!("read as a driver of the dialect {}; --dialect forces another", dialect.name()))
+                .help(format!("read as a driver of the dialect {}", dialect.name()))
+                .remedy(Remedy::NameDialect)
         };
         let eye = if dialect == Dialect::Course2020 { "camera" } else { "eye" };
         let near = if dialect == Dialect::Course2020 { "camera" } else { "d" };

@@ -100,7 +100,7 @@ fn the_way_people_type() {
 
 #[test]
 fn unknown_repeated_and_contradicting_lines_are_warnings() {
-    let codes = |text: &str| -> Vec<_> { read(text).warnings.iter().map(|w| w.warning.unwrap()).collect() };
+    let codes = |text: &str| -> Vec<_> { read(text).warnings.iter().map(|w| w.warning.unwrap().code()).collect() };
     assert_eq!(codes(&format!("{EARLY}ambeint 1 1 1\n")), ["W101 unknown-keyword"]);
     assert_eq!(codes(&format!("{EARLY}eye 1 1 1\n")), ["W102 repeated-line"]);
     assert_eq!(codes(&format!("{EARLY}cutoffAngle 3\n")), ["W106 unclear-dialect"]);

@@ -156,8 +156,10 @@ pub fn load(name: &str, options: &LoadOptions) -> Result<Loaded, Vec<Report>> {
             }
             Err(report) => {
                 let message = format!("there is no file and no built-in scene `{name}`");
-                let file = near_file(path).map(|near| format!("did you mean the file `{near}`? ")).unwrap_or_default();
-                Err(vec![Report::error(message).help(file + &report.help.unwrap_or_default())])
+                let file = near_file(path).map(|near| format!("did you mean the file `{near}`?"));
+                let help: Vec<String> = file.into_iter().chain(report.help.clone()).collect();
+                let help = (!help.is_empty()).then(|| help.join(" "));
+                Err(vec![Report { message, help, ..report }])
             }
         };
     }
@@ -281,7 +283,7 @@ pub fn load_with(
     let mut places = Places { text, changes: Vec::new() };
     for change in &options.set {
         let place = scene_file::set(&mut scene, change)?;
-        places.changes.push((place, Source::new("--set", change.as_str())));
+        places.changes.push((place, Source::new("the change", change.as_str())));
     }
     fill(&mut scene);
     scene.render.integrator = options.integrator.unwrap_or(scene.render.integrator);

@@ -91,7 +91,7 @@ impl<'a> ModelReader<'a> {
                 return Err(report.clone());
             }
             let message = format!("{}; its face has no texture coordinates", report.message);
-            let warning = Report { warning: Some(WarningCode::NotDrawn.code()), message, ..report.clone() };
+            let warning = Report { warning: Some(WarningCode::NotDrawn), message, ..report.clone() };
             self.warnings.push(warning);
         }
         if read.has_normals && !self.is_course && loaded.scene.meshes[index].smooth_angle == 0.0 {

@@ -325,7 +325,7 @@ mod tests {
     fn textures_and_unknown_words_are_warned_of() {
         let (_, warnings) = parse_mtl(&Source::new("m.mtl", "newmtl a\nmap_Ks no.png\nKq 3\n")).unwrap();
         assert!(warnings[0].message.contains("`no.png`") && warnings[0].message.contains("missing"));
-        assert_eq!(warnings[1].warning, Some("W101 unknown-keyword"));
+        assert_eq!(warnings[1].warning, Some(WarningCode::UnknownKeyword));
         assert!(parse_mtl(&Source::new("m.mtl", "Kd 1 1 1\n")).unwrap_err().message.contains("newmtl"));
         assert!(parse_mtl(&Source::new("m.mtl", "newmtl a\nKd 1 1\n")).unwrap_err().message.contains("read 2"));
     }

@@ -1,7 +1,7 @@
 //! Where a file lies that another file names.
 
 use crate::disk;
-use crate::report::{Report, nearest};
+use crate::report::{Remedy, Report, nearest};
 use snell::scene::WarningCode;
 use std::path::{Path, PathBuf};
 
@@ -34,8 +34,8 @@ pub fn find(name: &str, folder: &Path, search: &[PathBuf]) -> Result<Found, Repo
         let more = (search.len() + places.len()).saturating_sub(looked.len());
         let more = if more > 0 { format!(" and {more} more") } else { String::new() };
         let near = nearest_file(name, search, &places).map_or(String::new(), |near| format!("did you mean `{near}`? "));
-        let help = format!("{near}looked in {}{more}; name another folder with --search DIR", looked.join(", "));
-        Report::error(format!("the file `{name}` is not there")).help(help)
+        let help = format!("{near}looked in {}{more}", looked.join(", "));
+        Report::error(format!("the file `{name}` is not there")).help(help).remedy(Remedy::NameFolder)
     })
 }
 
@@ -121,7 +121,7 @@ fn ambiguous(name: &str, found: &[PathBuf]) -> Option<Report> {
         found[0].display(),
         other.display()
     );
-    Some(Report::warning(WarningCode::AmbiguousFile, message).help("say which with --search DIR"))
+    Some(Report::warning(WarningCode::AmbiguousFile, message).remedy(Remedy::NameFolder))
 }
 
 #[cfg(test)]
@@ -139,7 +139,7 @@ mod tests {
         let put = |p: &str, text: &str| fs::write(at(p), text).unwrap();
         let find = |name: &str, search: &[PathBuf]| find(name, &at("scenes"), search);
 
-        assert!(find("a.obj", &[]).unwrap_err().help.unwrap().contains("--search"));
+        assert_eq!(find("a.obj", &[]).unwrap_err().remedy, Some(Remedy::NameFolder));
         put("scenes/an.obj", "0");
         assert!(find("am.obj", &[]).unwrap_err().help.unwrap().starts_with("did you mean `an.obj`?"));
         put("other/a.obj", "1");

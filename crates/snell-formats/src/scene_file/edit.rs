@@ -22,7 +22,7 @@ use toml_edit::{Array, DocumentMut, Item, Key, TableLike, Value};
 /// When the change has no `=`, its key does not lead to a table of the scene, or what comes out is no scene. The place is in the
 /// text of the change.
 pub fn set(scene: &mut Scene, change: &str) -> Result<Vec<Step>, Report> {
-    let source = Source::new("--set", change);
+    let source = Source::new("the change", change);
     set_in(scene, change)
         .map_err(|report| if report.place.is_some() { report } else { report.at(&source, 0..change.len()) })
 }
@@ -52,8 +52,8 @@ fn split(change: &str) -> Option<(&str, &str)> {
 
 fn set_in(scene: &mut Scene, change: &str) -> Result<Vec<Step>, Report> {
     let Some((key, value)) = split(change) else {
-        let help = "write KEY=VALUE, like --set material.glass.eta=2.42";
-        return Err(Report::error(format!("`--set {change}` has no `=`")).help(help));
+        let help = "write KEY=VALUE, like material.glass.eta=2.42";
+        return Err(Report::error(format!("the change `{change}` has no `=`")).help(help));
     };
     let no_key = || Report::error(format!("`{key}` is no key of a scene")).help("like material.glass.eta");
     let keys = Key::parse(key.trim()).map_err(|_| no_key())?;

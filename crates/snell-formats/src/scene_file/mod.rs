@@ -119,12 +119,5 @@ pub fn places(steps: &[&[Step]], source: &Source, syntax: Syntax) -> Vec<Option<
     locate(&source.text, syntax, steps)
 }
 
-/// The JSON Schema of scene files.
-pub fn schema() -> String {
-    let mut schema = schemars::schema_for!(Scene);
-    schema.insert("title".to_owned(), "Snell scene, version 1".into());
-    serde_json::to_string_pretty(&schema).unwrap_or_default() + "\n"
-}
-
 #[cfg(test)]
 mod tests;

@@ -10,15 +10,17 @@ use crate::render::trace_pixel;
 use crate::scene::{Integrator, Scene};
 use crate::trace::{Ended, Hit, Node, PixelTrace, RayKind, RayTree, Settings};
 use crate::world::World;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// The version of this form.
 const VERSION: u32 = 1;
 
 /// Why a pixel has the colour it has.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Explanation {
-    /// The version of this form: 1.
+    /// The version of this form.
+    #[schemars(extend("const" = VERSION))]
     pub snell_ray_tree: u32,
     /// The name of the scene.
     pub scene: String,
@@ -41,7 +43,7 @@ pub struct Explanation {
 }
 
 /// One sample: contributions add up to its colour in the order of the nodes, and samples to the pixel times `spp`.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct ExplainedSample {
     /// Its sum.
     pub color: [f64; 3],
@@ -52,7 +54,7 @@ pub struct ExplainedSample {
 }
 
 /// What kind of ray.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum NodeKind {
     /// From the eye.
@@ -66,7 +68,7 @@ pub enum NodeKind {
 }
 
 /// Why nothing follows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Ending {
     /// It met nothing.
@@ -82,7 +84,7 @@ pub enum Ending {
 }
 
 /// One ray.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct ExplainedNode {
     /// Its place in the list.
     pub id: usize,
@@ -119,7 +121,7 @@ pub struct ExplainedNode {
 }
 
 /// What a ray met.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct ExplainedHit {
     /// The object.
     pub object: String,
@@ -148,7 +150,7 @@ pub struct ExplainedHit {
 }
 
 /// The light that a surface itself sends out, before opacity and throughput weigh it.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct LocalLight {
     /// Of the light from everywhere.
     pub ambient: [f64; 3],
@@ -159,7 +161,7 @@ pub struct LocalLight {
 }
 
 /// What a light does there.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct ExplainedLight {
     /// The light.
     pub name: String,

@@ -1,34 +1,58 @@
-//! An explanation as a tree of text.
+//! An explanation as a tree of text, which whoever shows it puts together of its pieces.
 
 use super::{Ending, ExplainedNode, ExplainedSample, Explanation, LocalLight, NodeKind, percent};
 use crate::film::transfer::{Encoding, Rounding, Transfer};
 use crate::scene::Integrator;
-use std::fmt::Write;
+use std::fmt::{self, Write};
 
-/// How the tree is written.
+/// How much of the tree is written.
 #[derive(Clone, Copy, Debug)]
 pub struct Style {
     /// So many of the strongest branches are shown.
     pub top: usize,
     /// Bounces that are shown.
     pub depth: u32,
-    /// With patches of colour, by the escape sequences of terminals.
-    pub colored: bool,
 }
 
 impl Default for Style {
     fn default() -> Self {
-        Self { top: 16, depth: u32::MAX, colored: false }
+        Self { top: 16, depth: u32::MAX }
     }
 }
 
-/// Two blanks in a colour, or nothing.
-pub fn swatch(color: [f64; 3], transfer: Transfer, colored: bool) -> String {
-    if !colored {
-        return String::new();
+/// A part of a text.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Piece {
+    /// Words as they are.
+    Words(String),
+    /// A colour in 8 bit, to be shown before the words that follow, or left out.
+    Patch([u16; 3]),
+    /// A line of its own: so many rays are not shown, and how to see more of them.
+    MoreRays(usize),
+}
+
+/// A text, written with `write!`, and patches of colour in it.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Text {
+    /// Its parts, in order.
+    pub pieces: Vec<Piece>,
+}
+
+impl Text {
+    /// Adds a patch of a linear colour.
+    pub fn patch(&mut self, color: [f64; 3], transfer: Transfer) {
+        self.pieces.push(Piece::Patch(bytes(color, transfer)));
     }
-    let [r, g, b] = bytes(color, transfer);
-    format!("\x1b[48;2;{r};{g};{b}m  \x1b[0m ")
+}
+
+impl Write for Text {
+    fn write_str(&mut self, words: &str) -> fmt::Result {
+        match self.pieces.last_mut() {
+            Some(Piece::Words(last)) => last.push_str(words),
+            _ => self.pieces.push(Piece::Words(words.to_owned())),
+        }
+        Ok(())
+    }
 }
 
 /// A colour in 8 bit.
@@ -55,35 +79,34 @@ pub fn six_digits(value: f64) -> String {
 }
 
 /// Title, sentence, and the tree of each sample.
-pub fn text(explanation: &Explanation, style: Style) -> String {
-    let mut text = head(explanation, style.colored);
+pub fn text(explanation: &Explanation, style: Style) -> Text {
+    let mut text = head(explanation);
     let total = mean(explanation.color) * f64::from(explanation.spp);
     for (number, sample) in explanation.samples.iter().enumerate() {
         if explanation.samples.len() > 1 {
             let _ = writeln!(text, "\nsample {} of {}  {}", number + 1, explanation.spp, numbers(sample.color));
         } else {
-            text.push('\n');
+            let _ = writeln!(text);
         }
         let tree = Tree::new(sample, total, style, explanation);
         let hidden = sample.nodes.len() - tree.node(&mut text, 0, "", "");
         if hidden > 0 {
-            let _ = writeln!(text, "  … {hidden} more rays; --top N and --depth N show more");
+            text.pieces.push(Piece::MoreRays(hidden));
         }
     }
     text
 }
 
 /// Which pixel, its colour, and the sentence.
-pub fn head(explanation: &Explanation, colored: bool) -> String {
+pub fn head(explanation: &Explanation) -> Text {
     let Explanation { scene, integrator, pixel: [x, y], size: [width, height], color, transfer, .. } = explanation;
     let [r, g, b] = bytes(*color, *transfer);
     let name = format!("{integrator:?}").to_lowercase();
-    format!(
-        "{scene}, pixel {x},{y} of {width} x {height}, {name}\n{}{} #{r:02x}{g:02x}{b:02x}\n{}\n",
-        swatch(*color, *transfer, colored),
-        numbers(*color),
-        explanation.sentence
-    )
+    let mut text = Text::default();
+    let _ = writeln!(text, "{scene}, pixel {x},{y} of {width} x {height}, {name}");
+    text.patch(*color, *transfer);
+    let _ = writeln!(text, "{} #{r:02x}{g:02x}{b:02x}\n{}", numbers(*color), explanation.sentence);
+    text
 }
 
 /// A sample's tree, of which only the strongest branches are shown.
@@ -125,16 +148,12 @@ impl<'a> Tree<'a> {
     }
 
     /// Writes a ray and those below it; returns how many.
-    fn node(&self, text: &mut String, id: usize, before: &str, below: &str) -> usize {
+    fn node(&self, text: &mut Text, id: usize, before: &str, below: &str) -> usize {
         let Some(node) = self.sample.nodes.get(id) else { return 0 };
         let mut count = 1;
-        let _ = writeln!(
-            text,
-            "{before}{:>6}  {}{}",
-            self.share(node.subtotal),
-            swatch(node.subtotal, self.explanation.transfer, self.style.colored),
-            line(node, self.explanation.integrator)
-        );
+        let _ = write!(text, "{before}{:>6}  ", self.share(node.subtotal));
+        text.patch(node.subtotal, self.explanation.transfer);
+        let _ = writeln!(text, "{}", line(node, self.explanation.integrator));
         if let Some(local) = &node.local
             && mean(node.contribution) != 0.0
         {

@@ -3,15 +3,20 @@
 use super::Names;
 use crate::film::transfer::Transfer;
 use crate::geometry::Bounds;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Triangles that are drawn; of objects beyond them, only the box.
 const MOST_FACES: u32 = 40_000;
 
-/// A scene to look at.
-#[derive(Clone, Debug, Serialize)]
+/// The version of this form.
+const VERSION: u32 = 1;
+
+/// What can be seen of a scene. Lengths are in scene units, colours linear.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct ViewScene {
-    /// The version of this form: 1.
+    /// The version of this form.
+    #[schemars(extend("const" = VERSION))]
     snell_view: u32,
     /// The curve by which colours are shown.
     transfer: Transfer,
@@ -21,16 +26,17 @@ pub struct ViewScene {
     lights: Vec<ViewLight>,
 }
 
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 struct ViewSphere {
     name: String,
     center: [f64; 3],
     radius: f64,
     color: [f64; 3],
+    /// From 0 to 1.
     opacity: f64,
 }
 
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 struct ViewMesh {
     name: String,
     /// x, y, z of one vertex after the other.
@@ -38,20 +44,24 @@ struct ViewMesh {
     /// Three vertices for each face.
     faces: Vec<u32>,
     color: [f64; 3],
+    /// From 0 to 1.
     opacity: f64,
 }
 
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 struct ViewCamera {
     eye: [f64; 3],
+    /// Of the image plane: left bottom, right bottom, left top, right top.
     corners: [[f64; 3]; 4],
     up: [f64; 3],
 }
 
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 struct ViewLight {
     name: String,
+    /// Where it stands.
     position: Option<[f64; 3]>,
+    /// Or, if it is infinitely far away, the direction towards it.
     direction: Option<[f64; 3]>,
     color: [f64; 3],
 }
@@ -104,6 +114,7 @@ impl ViewScene {
             corners: world.camera.corners().map(Into::into),
             up: world.camera.axes[1].into(),
         };
-        Self { snell_view: 1, transfer: names.scene.render.transfer, spheres, meshes, camera, lights: lights.collect() }
+        let transfer = names.scene.render.transfer;
+        Self { snell_view: VERSION, transfer, spheres, meshes, camera, lights: lights.collect() }
     }
 }

@@ -26,7 +26,7 @@ pub use sky::Sky;
 pub use texture::Texture;
 pub use transform::Transform;
 pub(crate) use transform::whole_map;
-pub use validate::{LARGEST_NUMBER, MAX_BANDS, MAX_DEPTH, MAX_SPP, Problem, Step, is_unprintable, validate};
+pub use validate::{LARGEST_NUMBER, MAX_BANDS, MAX_DEPTH, MAX_SPP, Problem, Remedy, Step, is_unprintable, validate};
 pub use warning::{Warning, WarningCode};
 
 pub use crate::film::transfer::{Rounding, Transfer};

@@ -37,7 +37,7 @@ impl Statistics {
             let (x, y) = column_and_row(world, pixel);
             format!(
                 "{} rays lost count of the solids that they are in, first in pixel {x},{y}: does a mesh cross itself, or is \
-                 one with `inside` open? `snell check` shows where",
+                 one with `inside` open?",
                 self.stray.count,
             )
         })

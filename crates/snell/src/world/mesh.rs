@@ -7,7 +7,9 @@ use crate::geometry::area::largest_angle;
 use crate::geometry::mesh::{MAX_SMOOTHED_VALENCE, NormalWeights};
 use crate::geometry::solid::{Options, repair, structure};
 use crate::geometry::{Affine, Bounds, TriangleMesh, Vec3, triangle};
-use crate::scene::{Integrator, LARGEST_NUMBER, Mesh, OpenMesh, Problem, Step, Warning, WarningCode, whole_map};
+use crate::scene::{
+    Integrator, LARGEST_NUMBER, Mesh, OpenMesh, Problem, Remedy, Step, Warning, WarningCode, whole_map,
+};
 use indexmap::IndexMap;
 
 /// Triangles on their way into a tree, each with its largest angle first ([`area`](crate::geometry::area)).
@@ -65,6 +67,11 @@ impl Sides {
     }
 }
 
+/// What is wrong with a mesh, without its place.
+fn refusal(message: String, help: &str, remedy: Option<Remedy>) -> Problem {
+    Problem { place: Vec::new(), message, help: Some(help.to_owned()), remedy }
+}
+
 /// The course's pictures are made with the plain mean.
 fn normal_weights(has_media: bool) -> NormalWeights {
     if has_media { NormalWeights::Angle } else { NormalWeights::Equal }
@@ -79,7 +86,7 @@ impl World {
         parts: &mut Parts,
     ) -> Result<(), Problem> {
         let place = |key: &str| vec![Step::from(which.0), Step::from(which.1), Step::from(key)];
-        let problem = |key: &str, message: String| Problem { place: place(key), message, help: None };
+        let problem = |key: &str, message: String| Problem { place: place(key), message, help: None, remedy: None };
         if mesh.inside.is_some() && !mesh.instances.is_empty() {
             // Media are what they are everywhere, unlike the solids of a model, which are others in each place.
             for steps in &mesh.instances {
@@ -117,13 +124,13 @@ impl World {
         };
         // Where a person would look for what is wrong with the mesh.
         let main_key = if mesh.file.is_some() { "file" } else { "material" };
-        let refused = |(message, help)| Problem { place: place(main_key), message, help: Some(help) };
+        let refused = |problem| Problem { place: place(main_key), ..problem };
         let (placed, sides) =
             self.sides_of(&name, &place("open"), mesh, placed, &material_of, material_ids).map_err(refused)?;
         let textured = (0..placed.faces.len()).any(|f| self.texture_of(material_of(f, &placed)).is_some());
         if textured && placed.face_uvs.is_empty() && !placed.faces.is_empty() {
-            let help = "give it a material without texture, or a model file with texture coordinates".to_owned();
-            return Err(refused((format!("`{name}` has no texture coordinates for its texture"), help)));
+            let help = "give it a material without texture, or a model file with texture coordinates";
+            return Err(refused(refusal(format!("`{name}` has no texture coordinates for its texture"), help, None)));
         }
         let weights = normal_weights(self.has_media);
         let corner_normals = (mesh.smooth_angle > 0.0).then(|| placed.smooth_normals(mesh.smooth_angle, weights));
@@ -185,7 +192,7 @@ impl World {
     }
 
     /// The mesh, with its holes filled if that was asked for, and what is on both sides of its faces if light goes through
-    /// them. Fails with what is wrong and what to do.
+    /// them. Fails with what is wrong and what to do, but not where.
     fn sides_of(
         &mut self,
         name: &str,
@@ -194,16 +201,14 @@ impl World {
         placed: TriangleMesh,
         material_of: &impl Fn(usize, &TriangleMesh) -> u32,
         material_ids: &MaterialIds<'_>,
-    ) -> Result<(TriangleMesh, Sides), (String, String)> {
+    ) -> Result<(TriangleMesh, Sides), Problem> {
         let materials = (0..placed.faces.len()).map(|f| material_of(f, &placed));
         let mut media = materials.filter(|&m| self.refracts(m)).map(|m| self.medium_of(m));
         let Some(medium) = media.next() else {
             if mesh.inside.is_some() && self.has_media {
                 let message = format!("`{name}` has media on both sides, but light does not go through its material");
-                return Err((
-                    message,
-                    "give the material a `ko` below 1 and no `thickness`, or remove `inside`".to_owned(),
-                ));
+                let help = "give the material a `ko` below 1 and no `thickness`, or remove `inside`";
+                return Err(refusal(message, help, None));
             }
             drop(media);
             return Ok((placed, Sides::None));
@@ -215,7 +220,7 @@ impl World {
         if media.any(|other| other != medium) {
             let message = format!("`{name}` has faces of different glasses, so that it is not clear what is inside");
             let help = "give all its transparent materials the same eta, absorption and priority";
-            return Err((message, help.to_owned()));
+            return Err(refusal(message, help, None));
         }
         drop(media);
         let why_not = match MeshSolids::of(&placed, medium) {
@@ -226,9 +231,8 @@ impl World {
         match mesh.open {
             None => {
                 let help = "give its material a `thickness` for thin panes, or the mesh open = \"fill\" or open = \
-                            \"opaque\", or the media on both sides, `inside` and `outside`; `snell check` shows what \
-                            is wrong with a model and can repair it";
-                Err((message, help.to_owned()))
+                            \"opaque\", or the media on both sides, `inside` and `outside`";
+                Err(refusal(message, help, Some(Remedy::CheckMesh)))
             }
             Some(OpenMesh::Opaque) => {
                 let message = format!("{message}; it is opaque, as `open` says");
@@ -239,9 +243,10 @@ impl World {
                 let (filled, _) = repair(&placed, &Options::default());
                 match MeshSolids::of(&filled, medium) {
                     Ok(solids) => Ok((filled, Sides::Solids(solids))),
-                    Err(why_not) => Err((
+                    Err(why_not) => Err(refusal(
                         format!("`{name}` is transparent, and with its holes filled still not a solid: {why_not}"),
-                        "`snell check` shows what is wrong with it; or add open = \"opaque\"".to_owned(),
+                        "add open = \"opaque\"",
+                        Some(Remedy::CheckMesh),
                     )),
                 }
             }
@@ -255,12 +260,12 @@ impl World {
         mesh: &Mesh,
         mut placed: TriangleMesh,
         material_ids: &MaterialIds<'_>,
-    ) -> Result<(TriangleMesh, Sides), (String, String)> {
+    ) -> Result<(TriangleMesh, Sides), Problem> {
         let turned = structure(&placed).misoriented.count;
         if turned > 0 {
             let message =
                 format!("`{name}` has two sides, but at {turned} of its edges neighbouring faces look opposite ways");
-            return Err((message, "`snell check --repair` turns them to one side".to_owned()));
+            return Err(refusal(message, "turn them to one side", Some(Remedy::RepairMesh)));
         }
         let bounds = Bounds::of(placed.vertices.iter().copied());
         let mut side = |name: Option<&String>| {

@@ -143,7 +143,7 @@ impl World {
             let message = "the image plane is so near to the eye that it is lost in rounding".to_owned();
             let place = vec![Step::from("camera"), Step::from("near")];
             let help = "move it away from the eye: let `near` be more negative, and `bounds` larger by the same factor";
-            return Err(vec![Problem { place, message, help: Some(help.to_owned()) }]);
+            return Err(vec![Problem { place, message, help: Some(help.to_owned()), remedy: None }]);
         }
         let material_ids: MaterialIds<'_> =
             scene.materials.keys().enumerate().map(|(i, name)| (name.as_str(), i as u32)).collect();
@@ -232,5 +232,5 @@ impl World {
 /// A picture that the scene names has not been read.
 fn unread(key: &str) -> Vec<Problem> {
     let place = vec![Step::from(key), Step::from("image")];
-    vec![Problem { place, message: "this picture has not been read".to_owned(), help: None }]
+    vec![Problem { place, message: "this picture has not been read".to_owned(), help: None, remedy: None }]
 }

@@ -108,7 +108,7 @@ fn why_not(report: &Report) -> String {
             format!(", the first from {a} to {b}")
         })
     };
-    // In the order and the words of `Report::verdict`, so that `snell check` says the same.
+    // In the order and the words of `Report::verdict`, so that a check of the model says the same.
     let open = report.components.iter().map(|c| c.open_edges).sum::<usize>();
     match report.verdict() {
         Verdict::Empty => "it has no faces".to_owned(),

@@ -21,8 +21,12 @@ impl World {
         };
         for map in places {
             let place = vec![Step::from("sphere"), Step::from(index), Step::from("transform")];
-            let problem =
-                |message: String, help: &str| Problem { place: place.clone(), message, help: Some(help.to_owned()) };
+            let problem = |message: String, help: &str| Problem {
+                place: place.clone(),
+                message,
+                help: Some(help.to_owned()),
+                remedy: None,
+            };
             let Some(factor) = similarity(&map) else {
                 let help = "scale by the same factor along x, y and z; for an ellipsoid use a `lathe` or a mesh";
                 return Err(problem("a sphere must stay a sphere, and this stretches it".to_owned(), help));

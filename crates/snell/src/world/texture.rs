@@ -129,7 +129,7 @@ pub(super) fn patterns(scene: &Scene, has_media: bool) -> Result<Vec<Pattern>, V
     let of = |(name, texture): (&String, &Texture)| {
         let unread = || {
             let place = ["texture", name, "image"].map(Step::from).to_vec();
-            vec![Problem { place, message: "this picture has not been read".to_owned(), help: None }]
+            vec![Problem { place, message: "this picture has not been read".to_owned(), help: None, remedy: None }]
         };
         Pattern::new(texture, has_media).ok_or_else(unread)
     };

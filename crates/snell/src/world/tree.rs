@@ -11,13 +11,13 @@ impl World {
     pub(super) fn build_tree(&mut self, parts: &Parts, quality: Quality, threads: usize) -> Result<(), Problem> {
         let problem = |(kind, index): Which, message: String| {
             let place = vec![Step::from(kind), Step::from(index), Step::from("instances")];
-            Problem { place, message, help: None }
+            Problem { place, message, help: None, remedy: None }
         };
         let Triangles { vertices, faces } = &parts.triangles;
         let shapes = Shapes { spheres: &self.spheres, vertices, faces, instances: &[] };
         if shapes.count() + parts.placed.len() >= 1 << 31 {
             let message = "more than 2 billion spheres and triangles".to_owned();
-            return Err(Problem { place: vec![Step::from("mesh")], message, help: None });
+            return Err(Problem { place: vec![Step::from("mesh")], message, help: None, remedy: None });
         }
         // Rays start at the camera or on surfaces; no ray origin is farther from a primitive than this.
         let starts = self.camera.starts();

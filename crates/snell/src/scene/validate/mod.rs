@@ -48,6 +48,15 @@ impl From<usize> for Step {
     }
 }
 
+/// What helps besides a change of the scene. It is done with tools of whoever shows the problem, who names them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Remedy {
+    /// To look at where a mesh is open, or its faces are turned.
+    CheckMesh,
+    /// To turn the faces of a mesh to one side.
+    RepairMesh,
+}
+
 /// Why a scene cannot be drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Problem {
@@ -55,8 +64,10 @@ pub struct Problem {
     pub place: Vec<Step>,
     /// What was read and what was expected.
     pub message: String,
-    /// What to do about it.
+    /// What to do about it in the scene.
     pub help: Option<String>,
+    /// What to do about it elsewhere.
+    pub remedy: Option<Remedy>,
 }
 
 impl fmt::Display for Problem {
@@ -83,7 +94,7 @@ struct Findings {
 impl Findings {
     fn problem(&mut self, place: Vec<Step>, message: impl Into<String>, help: &str) {
         let help = (!help.is_empty()).then(|| help.to_owned());
-        self.problems.push(Problem { place, message: message.into(), help });
+        self.problems.push(Problem { place, message: message.into(), help, remedy: None });
     }
 
     fn warning(&mut self, code: WarningCode, place: Vec<Step>, message: impl Into<String>) {

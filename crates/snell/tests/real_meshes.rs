@@ -2,14 +2,12 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-mod common;
-
-use common::data;
 use snell::render::{Options, Rendered, Settings, render};
 use snell::scene::Scene;
 use snell::world::World;
 use snell_formats::load::{Kind, load_text};
 use snell_formats::{LoadOptions, Source, load};
+use snell_test_scenes::real_files::data;
 use std::path::Path;
 
 const SKY: f64 = 0.5;

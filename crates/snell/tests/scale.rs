@@ -5,7 +5,7 @@
 
 mod common;
 
-use common::{cases, close, picture, traced};
+use common::{close, picture, traced};
 use snell::film::Rgb;
 use snell::geometry::Vec3;
 use snell::optics::absorption::transmittance;
@@ -13,6 +13,7 @@ use snell::scene::{Integrator, Scene, WarningCode};
 use snell::world::World;
 use snell_formats::Source;
 use snell_formats::load::{Kind, LoadOptions, load_text};
+use snell_test_scenes::real_files::cases;
 use std::path::Path;
 
 fn read(text: &str) -> Scene {

@@ -271,7 +271,7 @@ fn a_light_on_the_surface_of_its_own_lamp_is_told() {
     let found = warnings(&lamp(1.0, 4.0 * f64::EPSILON, "mesh")).remove(0);
     assert!(found.message.contains(": 8.8"), "4 times 2.22e-16: {}", found.message);
     assert_eq!(
-        snell::scene::Problem { place: found.place, message: String::new(), help: None }.to_string(),
+        snell::scene::Problem { place: found.place, message: String::new(), help: None, remedy: None }.to_string(),
         "light[1].position: "
     );
     // Nobody's business where there are no shadows.

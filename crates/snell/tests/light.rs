@@ -4,7 +4,7 @@
 
 mod common;
 
-use common::{cases, close, furnace, glass, mesh, picture, traced};
+use common::{close, furnace, glass, mesh, picture, traced};
 use snell::film::Rgb;
 use snell::geometry::{Affine, TriangleMesh, Vec3, make, triangle};
 use snell::render::{Options, Settings, render};
@@ -14,6 +14,7 @@ use snell::world::{CameraFrame, World};
 use snell_formats::scene_file::{self, Syntax};
 use snell_formats::{LoadOptions, Source};
 use snell_test_scenes::brilliant::Cut;
+use snell_test_scenes::real_files::cases;
 
 /// Numbers that only look random, the same each time: the fractional parts of multiples of the golden ratio's kin.
 struct Numbers(u32);

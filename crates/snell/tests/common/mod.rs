@@ -12,8 +12,6 @@ use snell::scene::{
 use snell::texture::Image;
 use snell::trace::{RayKind, RayTree};
 use snell::world::World;
-use std::io::Write;
-use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// An empty white room, seen along −z.
@@ -157,25 +155,4 @@ pub fn leaves() -> Scene {
     scene.textures["leaf"].repeat = [2.0, 3.0];
     furnish(&mut scene, "leaf");
     scene
-}
-
-/// The real files that are tested with but not part of the project: `SNELL_DATA`, or `shared/data` beside the clone.
-pub fn data() -> Option<PathBuf> {
-    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
-    present(std::env::var_os("SNELL_DATA").map_or(beside, PathBuf::from))
-}
-
-/// Small inputs that went wrong once, in `shared/cases` beside the clone.
-pub fn cases() -> Option<PathBuf> {
-    present(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/cases"))
-}
-
-fn present(folder: PathBuf) -> Option<PathBuf> {
-    if folder.is_dir() {
-        return Some(folder);
-    }
-    // Not by `eprintln!`, which the test harness hides where a test passes.
-    let line = format!("SKIPPED: the real files are not there ({}); set SNELL_DATA\n", folder.display());
-    std::io::stderr().write_all(line.as_bytes()).unwrap();
-    None
 }

@@ -6,12 +6,11 @@ use snell::film::{Crop, Film, Rgb};
 use snell::render::{LaneWidth, Options, Settings, render, render_into, trace_pixel};
 use snell::scene::{Integrator, Scene, Transform};
 use snell::world::World;
-use snell_formats::scene_file::{Syntax, parse};
-use snell_formats::{LoadOptions, Source, disk, load};
+use snell_formats::{LoadOptions, disk, load};
+use snell_test_scenes::real_files::data;
 use snell_test_scenes::{
     all, at_size, crowd, far_away, first_light, hall_of_mirrors, hostile, instances, lecture, matrix, tiny_and_huge,
 };
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 fn picture(scene: &Scene, options: &Options<'_>) -> Film {
@@ -36,16 +35,9 @@ fn threads_tiles_lanes_and_tree_do_not_matter() {
 
 #[test]
 fn nor_do_they_on_the_course_s_scenes() {
-    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
-    let folder = std::env::var_os("SNELL_DATA").map_or(beside, PathBuf::from).join("course");
-    if !folder.is_dir() {
-        // Not by `eprintln!`, which the test harness hides where a test passes.
-        let line = format!("SKIPPED: the course's scenes are not there ({}); set SNELL_DATA\n", folder.display());
-        std::io::stderr().write_all(line.as_bytes()).unwrap();
-        return;
-    }
+    let Some(data) = data() else { return };
     let mut drivers = Vec::new();
-    find_drivers(&folder, &mut drivers);
+    find_drivers(&data.join("course"), &mut drivers);
     let mut rendered = 0;
     for path in &drivers {
         let name = path.to_str().unwrap();
@@ -248,26 +240,6 @@ fn a_film_is_used_again() {
             if render_into(&mut film, &world, &Settings::of(scene), &options).is_ok() {
                 assert!(film == picture(scene, &options));
             }
-        }
-    }
-}
-
-/// With the triangles where a file has them.
-fn written_out(mut scene: Scene) -> Scene {
-    for mesh in &mut scene.meshes {
-        let Some(geometry) = mesh.geometry.take() else { continue };
-        mesh.vertices = geometry.vertices.iter().map(|&vertex| vertex.into()).collect();
-        mesh.faces.clone_from(&geometry.faces);
-    }
-    scene
-}
-
-#[test]
-fn a_scene_survives_being_written_to_the_bit() {
-    for scene in [crowd(Integrator::Course2020), written_out(instances(0.0, true))] {
-        for syntax in [Syntax::Json, Syntax::Toml] {
-            let text = snell_formats::scene_file::to_text(&scene, syntax).unwrap();
-            assert!(parse(&Source::new("written", text), syntax).unwrap() == scene);
         }
     }
 }
