@@ -34,7 +34,7 @@ fn scenes(group: &str, size: u32) -> Vec<(String, Scene)> {
     all
 }
 
-/// The contributions of an explanation, folded as the design says: within a sample one by one, then the samples, then the mean.
+/// The contributions of an explanation, folded in the order of the engine: within a sample one by one, then the samples, then the mean.
 fn folded(explanation: &Explanation) -> [f64; 3] {
     let add = |a: [f64; 3], b: [f64; 3]| [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
     let sample =
