@@ -18,34 +18,34 @@ FOOT = """## How to measure it yourself
     make bench         # kernels, trees, rays and pictures
     make bench-peers   # against other programs, and how cost grows
 
-Each section says which machine it was measured on, when, and with which command. `make bench-peers` compares with POV-Ray and Embree 3
-where they are installed (Debian 12: `sudo apt-get install povray g++ libembree-dev`), and leaves out what is not there. Both keep what
-they measure in `docs/performance.json`, and `benches/report.py` writes this page from it: no number is typed by hand. Times depend on the
-machine, ratios less so; look at how far they spread. `snell render` says with each picture how long it took.
+Each section says on which machine, when, and with which command it was measured. `make bench-peers` compares with POV-Ray and Embree 3
+if they are installed (Debian 12: `sudo apt-get install povray g++ libembree-dev`), and leaves out the rest. Both record their
+measurements in `docs/performance.json`, and `benches/report.py` generates this page from it: no number is typed by hand. Times depend on
+the machine, ratios less so; mind their spread. `snell render` reports the time of each picture.
 """
 
 HOW = """\
-A ratio is taken within a round, in which every program is asked once; shown are the median of the rounds, the smallest
-and the largest, and the ratio of everybody's best times, which other jobs disturb least. Of "times as fast" more is better, of "times
-as long" and "times as much" less. Programs are compared one thread against one. For POV-Ray the time is the trace time that it
-reports itself, for Snell that of `render::render_into`, into the memory of a film that is there, so that fetching it from the system
-is not in it. For rays it is the time from columns of rays to columns of hits; both programs get the same rays and the same mesh, in
-numbers that `f32` can hold. Embree computes in `f32`, Snell in `f64`.
+A ratio is taken within a round, in which every program runs once; the table shows the median over the rounds, the smallest
+and the largest, and the ratio of the best times, which other jobs disturb least. For "times as fast" more is better, for "times
+as long" and "times as much" less. Programs are compared one thread against one. The time of POV-Ray is the trace time that it
+reports itself, that of Snell is `render::render_into` with an existing film, which excludes the allocation of its memory.
+For rays it is the time from arrays of rays to arrays of hits; both programs get the same rays and the same mesh, in
+numbers that `f32` can represent. Embree computes in `f32`, Snell in `f64`.
 """
 
 FLAKES = """\
 The sphereflake is the same picture in both programs, but for a few pixels at silhouettes and edges of shadows.
 `snell diff`: {flakes}.
-Its background is black in both, its ground a polygon in POV-Ray and two triangles in Snell; POV-Ray stops following a
+The background is black in both, the ground a polygon in POV-Ray and two triangles in Snell; POV-Ray stops following a
 branch that weighs less than 1/255, Snell follows all. The default scene is not the same picture: POV-Ray has no model
-like the lecture's, and gets its own glass and mirrors with the same coefficients and depth.
+like the lecture's, and uses its own glass and mirrors with the same coefficients and depth.
 """
 
 GLASS = """\
-The glass knot (`whitted`, index 1.5, no branch below 1/255) is the same picture in both programs where glass takes
-nothing from the light, but for pixels in which the chessboard is seen very small. `snell diff`: {glass}.
+The glass knot (`whitted`, index 1.5, no branch below 1/255) without shadows is the same picture in both programs, but for pixels
+in which the chessboard is strongly minified. `snell diff`: {glass}.
 The board is a polygon with a pattern in POV-Ray and 8192 triangles in Snell. Where light falls through the glass, both send
-their shadow rays straight through it: POV-Ray's light loses nothing there, Snell's what Fresnel says, at each face.
+their shadow rays straight through it: in POV-Ray they lose nothing, in Snell the Fresnel reflectance at each face.
 """
 
 
@@ -97,7 +97,7 @@ def measured(peers: dict) -> str:
         against = "Snell, one thread" if row["peer"] == "Snell" else row["peer"]
         what = row["what"].replace("two threads against one:", "two threads:")
         rows.append([what, against, *result])
-    return table(["what", "against", "Snell is, or takes", "spread", "best times"], rows)
+    return table(["what", "compared with", "Snell is, or takes", "spread", "best times"], rows)
 
 
 def goals(peers: dict) -> str:
@@ -115,7 +115,7 @@ def goals(peers: dict) -> str:
         rows.append([row["what"], row["peer"], goal, *result])
     reached = sum(row[-1] == "yes" for row in rows)
     head = f"<details><summary>Goals, of which {reached} of {len(rows)} are reached</summary>\n"
-    return "\n".join([head, table(["what", "against", "goal", "measured", "reached"], rows), "</details>\n"])
+    return "\n".join([head, table(["what", "compared with", "goal", "measured", "reached"], rows), "</details>\n"])
 
 
 def times(peers: dict) -> str:
@@ -126,7 +126,7 @@ def times(peers: dict) -> str:
         rate = f"{digits(rays / statistics.median(taken) / 1e6)} million rays/s" if rays else ""
         median = seconds(statistics.median(taken))
         rows.append([timing["program"], f"`{timing['question']}`", median, spread(taken, seconds), rate])
-    return table(["program", "asked for (last number: threads)", "median", "spread", ""], rows)
+    return table(["program", "command (last number: threads)", "median", "spread", ""], rows)
 
 
 def agreement(peers: dict) -> str:
@@ -143,7 +143,7 @@ def agreement(peers: dict) -> str:
 def compared(peers: dict) -> str:
     parts = ["## Against peers\n", measured(peers), heading(peers), HOW, goals(peers)]
     if peers["agreement"]:
-        parts += ["Do Snell and Embree find the same?\n", agreement(peers)]
+        parts += ["Do Snell and Embree find the same hits?\n", agreement(peers)]
     if "flakes" in peers:
         parts.append(FLAKES.format(flakes=peers["flakes"]))
     if "glass" in peers:
@@ -196,7 +196,7 @@ def grown(growth: dict) -> str:
         pixels.append([f"{p['x']} x {p['x']}", seconds(picture(p)), seconds(picture(p) / area(p)), *memory])
     depth = [[f"{p['x']}", seconds(picture(p)), f"{p['frame']['rays']:.0f}"] for p in growth["depth"]]
     return "\n".join([
-        "## As work grows\n",
+        "## Scaling\n",
         heading(growth),
         "One thread; the best of up to five times.",
         "",
@@ -217,17 +217,17 @@ def kernels(section: dict) -> str:
     parts = [
         "## Kernels, trees, rays, pictures\n",
         heading(section),
-        "One thread. Median, its 95 % confidence interval, and the time for one ray, primitive or pixel. A kernel\n"
-        "works on 1024 rays in a call.",
+        "One thread. Median, its 95 % confidence interval, and the time per ray, primitive or pixel. A kernel\n"
+        "processes 1024 rays per call.",
         "",
-        table(["what", "median", "95 %", "for one"], rows),
+        table(["what", "median", "95 %", "per item"], rows),
     ]
     counted = section["instructions"]
     if isinstance(counted, str):
         parts.append(f"Instructions are not counted: {counted}.\n")
     else:
         lines = [[f"`{question}`", digits(n / 1e6, 4)] for question, n in counted.items()]
-        parts.append(table(["asked for", "million instructions"], lines))
+        parts.append(table(["command", "million instructions"], lines))
     return "\n".join(parts)
 
 

@@ -1,4 +1,4 @@
-//! What `docs/deviations.md` says of sizes, computed anew.
+//! The sizes that `docs/deviations.md` gives, recomputed.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
@@ -92,7 +92,7 @@ fn two_faces_in_a_row_are_as_far_off_as_the_table_says() {
         compare(row, unpolarised(&|r| through(n, r)), through(n, r));
     }
     compare(&rows[2], unpolarised(&|r| r * r), r * r);
-    // What swings across one plane swings in the other.
+    // What is s-polarised in one plane is p-polarised in the other.
     compare(&rows[3], rs * rp, r * r);
 }
 
@@ -114,7 +114,7 @@ fn a_slanted_plate_lets_through_what_the_pages_say() {
     assert!(models.contains("1.4 % more would pass through the clear plate at 60° and 3.9 % more at 80°"));
 }
 
-/// By the engine: what it traces through a drop, and what the same ray would carry with both ways of swing apart.
+/// By the engine: what it traces through a drop, and what the same ray would carry with the two polarisations apart.
 #[test]
 fn the_rainbows_are_as_far_off_as_the_table_says() {
     let n = 1.333;
@@ -246,7 +246,7 @@ fn phong_sends_on_what_the_table_says() {
     const RINGS: u32 = 400;
     const AROUND: u32 = 720;
     let up = Vec3::new(0.0, 0.0, 1.0);
-    for row in table("What Phong's highlight sends on") {
+    for row in table("What Phong's highlight reflects") {
         let surface = Surface { kd: Rgb::gray(0.0), ks: Rgb::gray(1.0), spow: number(row[0]).0 };
         for (cell, degrees) in row[1..].iter().zip([0.0, 60.0, 80.0, 85.0, 89.0]) {
             let (sin_i, cos_i) = sin_cos_degrees(degrees);
