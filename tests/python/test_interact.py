@@ -71,7 +71,7 @@ def test_what_is_no_scene_or_has_no_such_index_is_said() -> None:
         snell.interact(SCENE, keys)
     odd_glass: Any = "x"
     with pytest.raises(snell.SceneError):
-        snell.interact(SCENE.replace(material={"glass": snell.Material(ko=odd_glass)}), eta=(1.0, 2.0))
+        snell.interact(SCENE.replace(materials={"glass": snell.Material(ko=odd_glass)}), eta=(1.0, 2.0))
     opaque = SCENE.with_("material.glass.ko", 1.0)
     for scene in (opaque, snell.scenes["gallery/prism"]):  # glass by name has no index of its own
         with pytest.raises(snell.SceneError, match="no material is transparent and has an index of its own"):

@@ -2,8 +2,8 @@
 
 use crate::errors::raise;
 use crate::picture::shaped;
-use crate::scene::Ready;
 use crate::watch::{unless_stopped, watched};
+use crate::world::Ready;
 use numpy::PyArray2;
 use pyo3::prelude::*;
 use snell::explain::text::{Style, text};

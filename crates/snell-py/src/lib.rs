@@ -11,6 +11,7 @@ mod optics;
 mod picture;
 mod scene;
 mod watch;
+mod world;
 
 use pyo3::prelude::*;
 

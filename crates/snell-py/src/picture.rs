@@ -2,8 +2,8 @@
 
 use crate::errors::{self, raise};
 use crate::explain::NativeTree;
-use crate::scene::Ready;
 use crate::watch::{unless_stopped, watched};
+use crate::world::Ready;
 use numpy::ndarray::{Array, ArrayView3, Dim, Dimension, ErrorKind, IntoDimension, ShapeError};
 use numpy::{PyArray, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray3};
 use pyo3::exceptions::{PyKeyboardInterrupt, PyRuntimeError};
@@ -22,7 +22,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 /// A film, and the scene that it shows.
-#[pyclass(frozen)]
+#[pyclass(frozen, module = "snell._native")]
 pub struct NativePicture {
     film: Film,
     ready: Arc<Ready>,
@@ -33,15 +33,26 @@ pub struct NativePicture {
 
 impl NativePicture {
     /// Renders, and ^C ends it with what is done by then.
-    pub fn render(py: Python<'_>, ready: Arc<Ready>, threads: usize, progress: Option<&Py<PyAny>>) -> PyResult<Self> {
+    pub fn render(
+        py: Python<'_>,
+        ready: Arc<Ready>,
+        threads: usize,
+        crop: Option<Crop>,
+        progress: Option<&Py<PyAny>>,
+    ) -> PyResult<Self> {
         let started = Instant::now();
-        let (rendered, stopped) = watched(py, &ready, threads, None, progress, |options| render(&ready.world, options));
+        let (rendered, stopped) = watched(py, &ready, threads, crop, progress, |options| render(&ready.world, options));
         let seconds = started.elapsed().as_secs_f64();
         match stopped {
             Some(error) if !error.is_instance_of::<PyKeyboardInterrupt>(py) => return Err(error),
             _ => {}
         }
-        let failed = |error: RenderError| raise(py, "RenderError", vec![(None, error.to_string(), None)]);
+        let failed = |error: RenderError| match error {
+            RenderError::CropOutside { .. } => {
+                raise(py, "SceneError", vec![(Some("crop".to_owned()), error.to_string(), None)])
+            }
+            RenderError::FilmTooLarge(_) => raise(py, "RenderError", vec![(None, error.to_string(), None)]),
+        };
         let Rendered { film, statistics } = rendered.map_err(failed)?;
         let mut warnings = statistics.warnings(&ready.world, film.pixels.len() as u64);
         warnings.extend(black_picture(&Names { world: &ready.world, scene: &ready.scene }, &film));
@@ -60,13 +71,13 @@ impl NativePicture {
 
     /// What `snell render --from` needs to make it again, with the settings that the scene leaves out.
     fn recipe(&self) -> String {
-        let Ready { name, text, folder, models, .. } = &*self.ready;
+        let Ready { name, folder, models, .. } = &*self.ready;
         let hash = self.film.is_finished().then(|| disk::sha256(self.film.bytes()));
         let whole = self.film.crop.width == self.film.full_size[0] && self.film.crop.height == self.film.full_size[1];
         let crop = (!whole).then_some(self.film.crop);
         let render = &self.ready.world.render;
         json!({
-            "snell": env!("CARGO_PKG_VERSION"), "name": name, "kind": "json", "text": text, "folder": folder,
+            "snell": env!("CARGO_PKG_VERSION"), "name": name, "kind": "json", "text": self.ready.text(), "folder": folder,
             "crop": crop, "spp": render.spp, "seed": render.seed, "depth": render.max_depth,
             "min_throughput": render.min_throughput, "bands": render.bands, "integrator": render.integrator,
             "shadows": render.shadows(), "default_shadows": self.ready.scene.render.shadows.is_none(),

@@ -1,6 +1,6 @@
 //! Work without Python's lock, which ^C ends.
 
-use crate::scene::Ready;
+use crate::world::Ready;
 use pyo3::prelude::*;
 use snell::film::Crop;
 use snell::render::{Options, Progress};
