@@ -1,5 +1,6 @@
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -57,6 +58,8 @@ class NativeWorld:
     def find(self, object: str, progress: Watch | None) -> tuple[list[tuple[str, int]], Floats]: ...
 
 class NativePicture:
+    def __init__(self, state: dict[str, Any]) -> None: ...
+    def __getnewargs__(self) -> tuple[dict[str, Any]]: ...
     @property
     def array(self) -> Floats: ...
     @property

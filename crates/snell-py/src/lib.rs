@@ -8,6 +8,7 @@
 mod errors;
 mod explain;
 mod optics;
+mod pickle;
 mod picture;
 mod scene;
 mod watch;

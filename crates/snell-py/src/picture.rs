@@ -2,10 +2,11 @@
 
 use crate::errors::{self, raise};
 use crate::explain::NativeTree;
+use crate::pickle::ReadyState;
 use crate::watch::{unless_stopped, watched};
 use crate::world::Ready;
 use numpy::ndarray::{Array, ArrayView3, Dim, Dimension, ErrorKind, IntoDimension, ShapeError};
-use numpy::{PyArray, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray3};
+use numpy::{PyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray3};
 use pyo3::exceptions::{PyKeyboardInterrupt, PyRuntimeError};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -14,7 +15,6 @@ use snell::explain::{Channels, Names, ViewScene, black_picture, channels, hits};
 use snell::film::transfer::{Encoding, Rounding, Transfer};
 use snell::film::{Crop, Film, Rgb};
 use snell::render::{RenderError, Rendered, render};
-use snell::scene::Warning;
 use snell_formats::picture::{self, Format};
 use snell_formats::{Report, disk};
 use std::path::PathBuf;
@@ -28,7 +28,22 @@ pub struct NativePicture {
     ready: Arc<Ready>,
     seconds: f64,
     rays: u64,
-    warnings: Vec<Warning>,
+    /// Number and name, and the whole text.
+    warnings: Vec<(String, String)>,
+}
+
+/// What a picture is pickled as.
+#[derive(FromPyObject, IntoPyObject)]
+#[pyo3(from_item_all)]
+struct PictureState<'py> {
+    ready: ReadyState<'py>,
+    full_size: (u32, u32),
+    region: (u32, u32, u32, u32),
+    numbers: Bound<'py, PyArray3<f64>>,
+    finished: Bound<'py, PyArray1<bool>>,
+    seconds: f64,
+    rays: u64,
+    warnings: Vec<(String, String)>,
 }
 
 impl NativePicture {
@@ -41,7 +56,8 @@ impl NativePicture {
         progress: Option<&Py<PyAny>>,
     ) -> PyResult<Self> {
         let started = Instant::now();
-        let (rendered, stopped) = watched(py, &ready, threads, crop, progress, |options| render(&ready.world, options));
+        let world = ready.world(py)?;
+        let (rendered, stopped) = watched(py, &ready, threads, crop, progress, |options| render(world, options));
         let seconds = started.elapsed().as_secs_f64();
         match stopped {
             Some(error) if !error.is_instance_of::<PyKeyboardInterrupt>(py) => return Err(error),
@@ -54,8 +70,9 @@ impl NativePicture {
             RenderError::FilmTooLarge(_) => raise(py, "RenderError", vec![(None, error.to_string(), None)]),
         };
         let Rendered { film, statistics } = rendered.map_err(failed)?;
-        let mut warnings = statistics.warnings(&ready.world, film.pixels.len() as u64);
-        warnings.extend(black_picture(&Names { world: &ready.world, scene: &ready.scene }, &film));
+        let black = black_picture(&Names { world, scene: &ready.scene }, &film);
+        let warnings = statistics.warnings(world, film.pixels.len() as u64).into_iter().chain(black);
+        let warnings = warnings.map(|warning| (warning.code.code().to_owned(), warning.to_string())).collect();
         Ok(Self { film, ready, seconds, rays: statistics.rays.total(), warnings })
     }
 
@@ -65,7 +82,7 @@ impl NativePicture {
     }
 
     fn encoding(&self) -> Encoding {
-        let render = &self.ready.world.render;
+        let render = &self.ready.scene.render;
         Encoding { transfer: render.transfer, rounding: render.rounding }
     }
 
@@ -75,7 +92,7 @@ impl NativePicture {
         let hash = self.film.is_finished().then(|| disk::sha256(self.film.bytes()));
         let whole = self.film.crop.width == self.film.full_size[0] && self.film.crop.height == self.film.full_size[1];
         let crop = (!whole).then_some(self.film.crop);
-        let render = &self.ready.world.render;
+        let render = &self.ready.scene.render;
         json!({
             "snell": env!("CARGO_PKG_VERSION"), "name": name, "kind": "json", "text": self.ready.text(), "folder": folder,
             "crop": crop, "spp": render.spp, "seed": render.seed, "depth": render.max_depth,
@@ -136,8 +153,8 @@ impl NativePicture {
     }
 
     /// What was found while rendering: number and name, and the whole text.
-    fn warnings(&self) -> Vec<(&'static str, String)> {
-        self.warnings.iter().map(|warning| (warning.code.code(), warning.to_string())).collect()
+    fn warnings(&self) -> Vec<(String, String)> {
+        self.warnings.clone()
     }
 
     /// As a PNG of 8 bit.
@@ -168,7 +185,7 @@ impl NativePicture {
 
     /// What the camera's rays met: depth, normal, number of the object; and the names of the objects.
     fn channels<'py>(&self, py: Python<'py>, progress: Option<Py<PyAny>>) -> PyResult<NativeChannels<'py>> {
-        let Ready { world, .. } = &*self.ready;
+        let world = self.ready.world(py)?;
         let crop = Some(self.film.crop);
         let work = watched(py, &self.ready, 0, crop, progress.as_ref(), |options| channels(world, options));
         let Channels { depth, normal, object } = unless_stopped(work)?;
@@ -184,21 +201,66 @@ impl NativePicture {
 
     /// How many surfaces the rays of each pixel met.
     fn hits<'py>(&self, py: Python<'py>, progress: Option<Py<PyAny>>) -> PyResult<Bound<'py, PyArray2<u32>>> {
-        let Ready { world, .. } = &*self.ready;
+        let world = self.ready.world(py)?;
         let crop = Some(self.film.crop);
         let work = watched(py, &self.ready, 0, crop, progress.as_ref(), |options| hits(world, options));
         shaped(py, self.shape(), unless_stopped(work)?)
     }
 
     /// The scene as the viewer draws it, in JSON.
-    fn view(&self) -> String {
-        let Ready { scene, world, .. } = &*self.ready;
-        serde_json::to_string(&ViewScene::of(&Names { world, scene })).unwrap_or_default()
+    fn view(&self, py: Python<'_>) -> PyResult<String> {
+        let names = Names { world: self.ready.world(py)?, scene: &self.ready.scene };
+        Ok(serde_json::to_string(&ViewScene::of(&names)).unwrap_or_default())
     }
 
     /// Why a pixel of the whole picture has its colour.
-    fn explain(&self, py: Python<'_>, x: u32, y: u32) -> Option<NativeTree> {
-        py.detach(|| NativeTree::of(&self.ready, x, y))
+    fn explain(&self, py: Python<'_>, x: u32, y: u32) -> PyResult<Option<NativeTree>> {
+        NativeTree::of(py, &self.ready, x, y)
+    }
+
+    /// From what `__getnewargs__` gave.
+    #[new]
+    fn new(py: Python<'_>, state: PictureState<'_>) -> PyResult<Self> {
+        let PictureState {
+            ready,
+            full_size,
+            region: (x, y, width, height),
+            numbers,
+            finished,
+            seconds,
+            rays,
+            warnings,
+        } = state;
+        let ready = Arc::new(ready.read(py)?);
+        let mut film = Film::new(full_size.into(), Crop { x, y, width, height })
+            .map_err(|error| raise(py, "PictureError", vec![(None, error.to_string(), None)]))?;
+        let numbers = numbers.readonly();
+        for (pixel, color) in film.pixels.iter_mut().zip(numbers.as_array().rows()) {
+            *pixel = Rgb::new(color[0], color[1], color[2]);
+        }
+        film.finished = finished.to_vec()?;
+        Ok(Self { film, ready, seconds, rays, warnings })
+    }
+
+    /// What a pickle of it holds.
+    fn __getnewargs__<'py>(slf: &Bound<'py, Self>) -> PyResult<(PictureState<'py>,)> {
+        let Self { film, ready, seconds, rays, warnings } = slf.get();
+        let state = PictureState {
+            ready: ReadyState::of(slf.py(), ready)?,
+            full_size: film.full_size.into(),
+            region: slf.get().region(),
+            numbers: Self::array(slf)?,
+            finished: PyArray1::from_slice(slf.py(), &film.finished),
+            seconds: *seconds,
+            rays: *rays,
+            warnings: warnings.clone(),
+        };
+        Ok((state,))
+    }
+
+    /// Itself: nothing of it can be changed.
+    fn __deepcopy__(slf: Py<Self>, _memo: Py<PyAny>) -> Py<Self> {
+        slf
     }
 }
 

@@ -22,7 +22,7 @@ pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
 }
 
 /// Vertices and faces of each mesh; `None` where it comes from a file.
-type Triangles<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<u32>>);
+pub type Triangles<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<u32>>);
 type Arrays<'py> = Vec<Option<Triangles<'py>>>;
 type ReadArrays<'py> = Vec<Option<(PyReadonlyArray2<'py, f64>, PyReadonlyArray2<'py, u32>)>>;
 

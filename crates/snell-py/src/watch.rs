@@ -23,7 +23,7 @@ pub fn watched<T: Send>(
 ) -> (T, Option<PyErr>) {
     let cancel = AtomicBool::new(false);
     let [pixels, rays] = [AtomicU64::new(0), AtomicU64::new(0)];
-    let [width, height] = crop.map_or(ready.world.camera.size, |c| [c.width, c.height]).map(u64::from);
+    let [width, height] = crop.map_or(ready.scene.render.size, |c| [c.width, c.height]).map(u64::from);
     let count = |done: Progress| {
         pixels.fetch_max(done.pixels, Ordering::Relaxed);
         rays.fetch_max(done.rays, Ordering::Relaxed);

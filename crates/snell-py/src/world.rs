@@ -1,6 +1,6 @@
 //! Compiled scenes, with what their pictures need to know of them.
 
-use crate::errors::{self, Finding};
+use crate::errors::{self, Finding, raise};
 use crate::explain::Seen;
 use crate::picture::NativePicture;
 use crate::scene::Inline;
@@ -13,7 +13,7 @@ use snell_formats::load::{Kind, ModelFile, load_with};
 use snell_formats::scene_file::{self, Syntax};
 use snell_formats::{LoadOptions, Report, Source};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// A scene with its files.
 pub struct Read {
@@ -57,15 +57,30 @@ pub fn reads_the_same(a: &Scene, b: &Scene) -> bool {
 pub struct Ready {
     pub name: String,
     /// What is described, without what files and arrays hold.
-    described: Scene,
+    pub described: Scene,
     /// The same with its files, and its triangles.
     pub scene: Scene,
-    pub world: World,
     pub folder: PathBuf,
     pub models: Vec<ModelFile>,
+    world: OnceLock<Result<World, Vec<Finding>>>,
 }
 
 impl Ready {
+    /// A scene that is compiled when someone asks for its world.
+    pub fn later(name: String, described: Scene, scene: Scene, folder: PathBuf, models: Vec<ModelFile>) -> Self {
+        Self { name, described, scene, folder, models, world: OnceLock::new() }
+    }
+
+    fn compiled(&self) -> Result<&World, &Vec<Finding>> {
+        let compile = || compile(&self.scene).map_err(|problems| problems.iter().map(errors::problem).collect());
+        self.world.get_or_init(compile).as_ref()
+    }
+
+    /// The world.
+    pub fn world(&self, py: Python<'_>) -> PyResult<&World> {
+        py.detach(|| self.compiled()).map_err(|findings| raise(py, "SceneError", findings.clone()))
+    }
+
     /// The text of the scene, as a picture remembers it.
     pub fn text(&self) -> String {
         let mut scene = self.described.clone();
@@ -95,12 +110,11 @@ pub struct NativeWorld {
 impl NativeWorld {
     pub fn compile(name: String, described: Scene, read: Read, folder: PathBuf) -> Result<Self, Vec<Finding>> {
         let Read { scene, models, warnings: read_warnings } = read;
-        let world =
-            compile(&scene).map_err(|problems| problems.iter().map(errors::problem).collect::<Vec<Finding>>())?;
+        let ready = Ready::later(name, described, scene, folder, models);
+        let world = ready.compiled().map_err(Clone::clone)?;
         let of_world = world.warnings.iter().map(|w| (Some(errors::path(&w.place)), w.to_string(), None));
         let warnings = read_warnings.iter().cloned().chain(of_world).collect();
-        let ready = Arc::new(Ready { name, described, scene, world, folder, models });
-        Ok(Self { ready, read_warnings, warnings })
+        Ok(Self { ready: Arc::new(ready), read_warnings, warnings })
     }
 
     pub fn described(&self) -> &Scene {
