@@ -62,8 +62,17 @@ def said(how: Mapping[str, Any], known: type[Settings]) -> dict[str, Any]:
 
 
 def text(value: object, place: str) -> str:
-    """Return a value as the library reads it behind a key."""
-    return json.dumps(plain(value, place), ensure_ascii=False)  # TOML has no surrogates
+    """Return a value as the library reads it behind a key: in TOML."""
+    return _toml(plain(value, place))
+
+
+def _toml(value: Any) -> str:
+    match value:
+        case list():
+            return f"[{', '.join(map(_toml, value))}]"
+        case dict():
+            return f"{{{', '.join(f'{_toml(key)} = {_toml(inner)}' for key, inner in value.items())}}}"
+    return json.dumps(value, ensure_ascii=False)  # TOML has no surrogates
 
 
 def changes(how: Mapping[str, Any]) -> list[Change]:

@@ -1,4 +1,4 @@
-"""Scenes, pictures and trees are pickled and copied, to the bit; pictures also where the files of their scene are gone."""
+"""Scenes, pictures and trees are pickled and copied, to the bit; pictures also where the files of a scene are gone."""
 
 from __future__ import annotations
 

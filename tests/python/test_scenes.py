@@ -126,6 +126,12 @@ def test_scenes_are_values() -> None:
     assert scene == snell.scenes["lecture/default"] != diamond
     moved = scene.with_("sphere.glass.center", (1, 2, 3)).with_("light.2.color", [1, 0, 0])
     assert (moved.spheres[0].center, moved.lights[1].color) == ((1, 2, 3), (1, 0, 0))
+    steps = [{"rotate": {"axis": (0, 1, 0), "degrees": 30}}, {"move": (1, 2, 3)}]
+    assert scene.with_("sphere.glass.transform", steps) == scene.replace(
+        spheres=[scene.spheres[0].replace(transform=steps), *scene.spheres[1:]]
+    )
+    named = scene.with_("sphere.glass.name", "Glas 🔮")
+    assert named.spheres[0].name == "Glas 🔮"
     other = scene.replace(eta_outside=1.33)
     other.camera.eye = (0, 0, 0)
     assert scene.camera.eye == (50, 50, 100), "a copy has its own parts"

@@ -7,7 +7,7 @@ use crate::scene::Inline;
 use pyo3::prelude::*;
 use snell::film::Crop;
 use snell::geometry::bvh::Quality;
-use snell::scene::{Problem, Scene};
+use snell::scene::{Mesh, Problem, Scene};
 use snell::world::World;
 use snell_formats::load::{Kind, ModelFile, load_with};
 use snell_formats::scene_file::{self, Syntax};
@@ -32,25 +32,19 @@ pub fn read_files(source: &Source, folder: &Path, inline: &Inline) -> Result<Rea
     Ok(Read { warnings: findings(&loaded.warnings), scene: loaded.scene, models: loaded.models })
 }
 
-/// Do two scenes read the same files, in the same way? These are all the values that reading looks at.
-pub fn reads_the_same(a: &Scene, b: &Scene) -> bool {
-    let meshes = |scene: &Scene| {
-        let meshes = scene.meshes.iter();
-        meshes
-            .map(|m| (m.file.clone(), m.material.clone(), m.materials.clone(), m.smooth_angle == 0.0))
-            .collect::<Vec<_>>()
-    };
-    let textured =
-        |scene: &Scene| scene.materials.iter().map(|(name, m)| (name.clone(), m.texture.clone())).collect::<Vec<_>>();
-    let textures = |scene: &Scene| {
-        scene.textures.iter().map(|(name, t)| (name.clone(), t.image.clone(), t.linear)).collect::<Vec<_>>()
-    };
-    let sky = |scene: &Scene| scene.sky.as_ref().and_then(|sky| sky.image.clone());
-    a.render.integrator == b.render.integrator
-        && meshes(a) == meshes(b)
-        && textured(a) == textured(b)
-        && textures(a) == textures(b)
-        && sky(a) == sky(b)
+/// Do two scenes read the same files, in the same way?
+pub fn reads_the_same<'a>(a: &'a Scene, b: &'a Scene) -> bool {
+    read_by(a) == read_by(b)
+}
+
+/// All values that reading looks at.
+fn read_by(scene: &Scene) -> impl PartialEq {
+    // The normals of a model are spoken of where its mesh is flat.
+    let flat = |mesh: &Mesh| mesh.file.is_some() && mesh.smooth_angle == 0.0;
+    let meshes: Vec<_> = scene.meshes.iter().map(|m| (&m.file, &m.material, &m.materials, flat(m))).collect();
+    let materials: Vec<_> = scene.materials.iter().map(|(name, m)| (name, &m.texture)).collect();
+    let textures: Vec<_> = scene.textures.iter().map(|(name, t)| (name, &t.image, t.linear)).collect();
+    (scene.render.integrator, meshes, materials, textures, scene.sky.as_ref().map(|sky| &sky.image))
 }
 
 /// What pictures need to know of the scene that they show.
