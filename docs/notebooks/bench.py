@@ -6,9 +6,9 @@ import numpy as np
 from snell import Camera, Material, Render, Scene
 
 
-def bench(material: dict[str, Material], **shapes) -> Scene:
+def bench(materials: dict[str, Material], **shapes) -> Scene:
     """Return a scene of which only the rays matter; it has no light, and needs none."""
-    return Scene(settings=Render("whitted"), camera=Camera((0, 0, 0), (1, 0, 0), (0, 0, 1)), material=material, **shapes)
+    return Scene(settings=Render("whitted"), camera=Camera((0, 0, 0), (1, 0, 0), (0, 0, 1)), materials=materials, **shapes)
 
 
 def ray(scene: Scene, start, degrees: float = 0.0, depth: int = 3, least: float = 0.0, bands: int = 16):

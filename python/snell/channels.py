@@ -29,7 +29,7 @@ class Channels:
     object : ndarray of int, (height, width)
         The number of the object in `names`; -1 where nothing is (which Python would take for the last one).
     names : list of str
-        The objects.
+        The objects, in the order of the scene.
     hits : ndarray of int, (height, width)
         Surfaces that all rays of the pixel met; traced when it is first asked for.
 

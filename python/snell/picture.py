@@ -24,14 +24,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Sightings:
-    """Where an object is seen; notebooks show the mask.
+    """Where an object is seen, as `Scene.find` says it; notebooks show the mask.
 
     Attributes
     ----------
     paths : list of (str, int)
-        Ways of light, each with its number of pixels; a pixel counts once for each way that it has.
+        Light paths, like ``camera → glass(refract) → green``, each with its number of pixels, the most first; a pixel
+        counts once for each path that it has.
     mask : ndarray, (height, width)
-        Which share of each pixel is the object.
+        Which share of each pixel is the object, 0 to 1.
     """
 
     paths: list[tuple[str, int]]
@@ -43,16 +44,16 @@ class Sightings:
 
 @dataclass(frozen=True, eq=False)
 class Difference:
-    """What two pictures differ in; notebooks show where, the largest difference in white.
+    """What two pictures differ in, as `Picture.diff` says it; notebooks show where, the largest difference in white.
 
     Attributes
     ----------
     pixels, total : int
         So many pixels differ in any bit, of so many.
     largest : float
-        The largest difference of a number.
+        The largest difference of a number, linear, without its sign.
     array : ndarray, (height, width, 3)
-        First minus second.
+        First minus second, linear.
     """
 
     pixels: int
@@ -69,6 +70,9 @@ class Difference:
 
 class Picture:
     """A picture, as `Scene.render` makes it; notebooks show it as PNG.
+
+    ``np.asarray(picture)`` is `Picture.array`. A pickled picture takes with it all that it is made of, also what was
+    read from files, so that it can be explained and saved anywhere; only the same version of Snell reads it.
 
     Examples
     --------
@@ -133,10 +137,15 @@ class Picture:
         return [text for _, text in self._native.warnings()]
 
     def __array__(self, dtype: DTypeLike | None = None, copy: bool | None = None) -> NDArray[Any]:
-        same = dtype is None or np.dtype(dtype) == self.array.dtype
-        if copy is False and not same:
-            raise ValueError("another type of numbers needs a copy")
-        return self.array if same and not copy else self.array.astype(dtype or np.float64)
+        wanted = self.array.dtype if dtype is None else np.dtype(dtype)
+        if wanted == self.array.dtype and not copy:
+            return self.array
+        if copy is False:
+            raise ValueError(f"numbers of {wanted} need a copy: those of a picture are {self.array.dtype}")
+        return self.array.astype(wanted)
+
+    def __reduce__(self) -> tuple[type[Picture], tuple[_native.NativePicture, str]]:
+        return Picture, (self._native, self.name)
 
     def save(self, path: str | os.PathLike[str], *, bits: int = 8, binary: bool = False) -> None:
         """Write it as .png, .ppm, .exr or .npy; PNG and EXR remember how it was made (``snell render --from``).
@@ -220,8 +229,7 @@ class Picture:
         """
         x, y = (whole(number, "explain", PictureError) for number in (x, y))
         if not (0 <= x < self.width and 0 <= y < self.height):
-            help = f"columns are 0 to {self.width - 1}, rows 0 to {self.height - 1}, from the top left"
-            raise PictureError([("explain", f"there is no pixel {x},{y}", help)])
+            raise no_pixel(x, y, self.width, self.height)
         left, top = self._native.region[:2]
         tree = self._native.explain(left + x, top + y)
         assert tree is not None, "the pixel is there"
@@ -233,3 +241,9 @@ class Picture:
     def __repr__(self) -> str:
         state = "" if self.finished else ", unfinished"
         return f"<Picture of {self.name}, {self.width} x {self.height}{state}>"
+
+
+def no_pixel(x: int, y: int, width: int, height: int) -> PictureError:
+    """Return the error of who asks for a pixel that is not there."""
+    help = f"columns are 0 to {width - 1}, rows 0 to {height - 1}, from the top left"
+    return PictureError([("explain", f"there is no pixel {x},{y}", help)])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import json
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -9,16 +10,19 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
-import numpy as np
-
 from . import _native
-from .errors import Finding, SceneError, warn
+from . import how as how_of
+from .errors import Finding, PictureError, SceneError, warn
+from .how import How, Settings
 from .parts import Box, Camera, Lathe, Light, Material, Mesh, Plane, Render, Sky, Sphere, Texture
-from .picture import Picture, Sightings
+from .picture import Picture, Sightings, no_pixel
 from .progress import watcher
-from .values import Color, Value, plain
+from .tree import RayTree
+from .values import Color, Value, plain, whole
 
 if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
     from .notebook.view import View
 
 _LISTS: Mapping[str, type[Value]] = {
@@ -26,38 +30,70 @@ _LISTS: Mapping[str, type[Value]] = {
 }  # fmt: skip
 _TABLES: Mapping[str, type[Value]] = {"render": Render, "camera": Camera, "sky": Sky}
 _NAMED: Mapping[str, type[Value]] = {"material": Material, "texture": Texture}
-_MOST_THREADS = 4096
+#: Keys of a file, and the fields that are called otherwise: of many things a file has one table each, a scene a list.
+_FIELDS = {
+    "render": "settings", "light": "lights", "material": "materials", "texture": "textures", "sphere": "spheres",
+    "mesh": "meshes", "plane": "planes", "box": "boxes", "lathe": "lathes",
+}  # fmt: skip
 _REMARKS = ("W202 lost-light", "W203 black-picture")  # told by the picture, which may be meant so
 
 
 @dataclass(eq=False, repr=False, kw_only=True)
 class Scene(Value):
-    """Everything that a picture depends on. Its fields are the keys of a scene file, but for `settings`.
+    """Everything that a picture depends on.
+
+    Its fields are the keys of a scene file, but lists have plural names, and the table ``render`` is `settings`, as
+    `render` is what one does with a scene. The keys of the file (``sphere=``) are taken as parameters, too.
 
     Parameters
     ----------
     settings : Render
-        The table ``render`` of a file.
+        How the picture is made.
     camera : Camera
-    light, sphere, mesh, plane, box, lathe : sequences
-    material : dict of str to Material, or a sequence of Material
-        Those of a sequence are called by their number from 0.
-    texture : dict of str to Texture
-    ambient, background : float or (3,)
+        Where it is seen from.
+    ambient : float or (3,)
+        Light that comes from everywhere alike, linear, 1 for white; by default 0.
+    background : float or (3,)
+        `whitted`: light that comes from where nothing is; by default 0.
     sky : Sky, optional
+        `whitted`: light that depends on the direction, instead of `background`.
     eta_outside : float
-    folder : str
-        What file names are relative to.
+        Index of refraction of the space between the objects, 0.001 to 1000; by default 1.
+    lights : sequence of Light
+        Where light comes from; by default from nowhere.
+    materials : dict of str to Material, or sequence of Material
+        What things are made of. Those of a sequence are called by their number from 0.
+    textures : dict of str to Texture
+        Patterns on surfaces, by name.
+    spheres : sequence of Sphere
+        By default none, as of the other shapes.
+    meshes : sequence of Mesh
+        Triangles.
+    planes : sequence of Plane
+        Rectangles.
+    boxes : sequence of Box
+        Boxes along the axes.
+    lathes : sequence of Lathe
+        What turns around an axis.
+    folder : str or path
+        What the names of files are relative to; by default the working directory.
     name : str
-        For titles.
+        For titles and explanations; by default ``"scene"``.
+
+    Raises
+    ------
+    SceneError
+        If a list is given by both of its names. What is wrong with a scene is found when it is rendered.
 
     Examples
     --------
     >>> import snell
     >>> scene = snell.scenes["lecture/default"]
     >>> diamond = scene.with_("material.glass.eta", 2.42)
-    >>> diamond.material["glass"].eta, diamond == scene
+    >>> diamond.materials["glass"].eta, diamond == scene
     (2.42, False)
+    >>> [sphere.name for sphere in scene.spheres]
+    ['glass', 'red', 'green', 'blue']
     """
 
     settings: Render
@@ -66,19 +102,30 @@ class Scene(Value):
     background: Color = 0.0
     sky: Sky | None = None
     eta_outside: float = 1.0
-    light: Sequence[Light] = ()
-    material: Mapping[str, Material] | Sequence[Material] = field(default_factory=dict)
-    texture: Mapping[str, Texture] = field(default_factory=dict)
-    sphere: Sequence[Sphere] = ()
-    mesh: Sequence[Mesh] = ()
-    plane: Sequence[Plane] = ()
-    box: Sequence[Box] = ()
-    lathe: Sequence[Lathe] = ()
-    folder: str = "."
+    lights: Sequence[Light] = ()
+    materials: Mapping[str, Material] | Sequence[Material] = field(default_factory=dict)
+    textures: Mapping[str, Texture] = field(default_factory=dict)
+    spheres: Sequence[Sphere] = ()
+    meshes: Sequence[Mesh] = ()
+    planes: Sequence[Plane] = ()
+    boxes: Sequence[Box] = ()
+    lathes: Sequence[Lathe] = ()
+    folder: str | os.PathLike[str] = "."
     name: str = "scene"
 
     beside: ClassVar[frozenset[str]] = frozenset({"folder", "name"})
+    called: ClassVar[Mapping[str, str]] = {field: key for key, field in _FIELDS.items()}
     colors: ClassVar[frozenset[str]] = frozenset({"ambient", "background"})
+
+    def replace(self, **changes: Any) -> Scene:
+        """Return a copy of its own with some fields changed, by their names or by the keys of a file."""
+        return super().replace(**_by_field(changes))
+
+    def _no_field(self, name: str) -> AttributeError:
+        if name in _FIELDS:
+            message = f"a Scene has no field `{name}`, which is a key of scene files: it is `{_FIELDS[name]}` here"
+            return AttributeError(message, name=name, obj=self)
+        return super()._no_field(name)
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Scene:
@@ -101,7 +148,33 @@ class Scene(Value):
         return cls._of(text, arrays, str(folder), name)
 
     @classmethod
-    def _of(cls, text: str, arrays: _native.Arrays, folder: str, name: str) -> Scene:
+    def of(cls, table: Mapping[str, Any], *, folder: str | os.PathLike[str] = ".", name: str = "scene") -> Scene:
+        """Make one of the form that a scene file has, as `json.load` and `tomllib.load` read it.
+
+        Parameters
+        ----------
+        table : dict
+            With the keys of the file.
+        folder, name
+            As for `Scene`.
+
+        Raises
+        ------
+        SceneError
+            Naming the key that is wrong.
+
+        Examples
+        --------
+        >>> camera = {"eye": (0, 0, 5), "look_at": (0, 0, 0), "up": (0, 1, 0), "fov": 40}
+        >>> Scene.of({"snell": 1, "render": {"integrator": "whitted", "size": (32, 24)}, "camera": camera}).spheres
+        ()
+        """
+        if not isinstance(table, Mapping):
+            raise SceneError([("table", f"expected a dict, read {table!r}", None)])
+        return cls._of(*_native.parsed(json.dumps(plain(table, ""))), folder, name)
+
+    @classmethod
+    def _of(cls, text: str, arrays: _native.Arrays, folder: str | os.PathLike[str], name: str) -> Scene:
         table = json.loads(text)
         fields: dict[str, Any] = {"folder": folder, "name": name}
         for key, value in table.items():
@@ -110,7 +183,7 @@ class Scene(Value):
             elif key in _NAMED:
                 fields[key] = {name: _NAMED[key].of(element) for name, element in value.items()}
             elif key in _TABLES:
-                fields["settings" if key == "render" else key] = _TABLES[key].of(value)
+                fields[key] = _TABLES[key].of(value)
             elif key not in ("snell", "$schema"):
                 fields[key] = tuple(value) if isinstance(value, list) else value
         for mesh, triangles in zip(fields.get("mesh", []), arrays, strict=True):
@@ -132,7 +205,7 @@ class Scene(Value):
         if self.sky is not None:
             self._check("sky", self.sky, Sky)
         for key in ("material", *_LISTS):
-            value = getattr(self, key)
+            value = getattr(self, _FIELDS[key])
             if not isinstance(value, Sequence | Mapping) or isinstance(value, str):
                 raise SceneError([(key, f"expected a list, read {value!r}", None)])
         for key in sorted(self.beside):
@@ -140,10 +213,9 @@ class Scene(Value):
                 raise SceneError([(key, f"expected a text, read {getattr(self, key)!r}", None)])
         materials = self._materials()
         table: dict[str, Any] = {"snell": 1, **super().plain()}
-        table = {("render" if key == "settings" else key): value for key, value in table.items()}
         table["material"] = {name: material.plain(f"material.{name}") for name, material in materials.items()}
         for key, kind in _LISTS.items():
-            for index, element in enumerate(list(getattr(self, key))):
+            for index, element in enumerate(list(getattr(self, _FIELDS[key]))):
                 self._check(f"{key}[{index}]", element, kind)
             for index, element in enumerate(table[key]):
                 for reference in ("material", "inside", "outside"):
@@ -162,14 +234,14 @@ class Scene(Value):
             raise SceneError([(place, f"expected a {kind.__name__}, read {value!r}", None)])
 
     def _materials(self) -> dict[str, Material]:
-        given = self.material
+        given = self.materials
         named = list(given.items()) if isinstance(given, Mapping) else [(str(i), m) for i, m in enumerate(list(given))]
         for name, material in named:
             self._check(f"material.{name}", material, Material)
         return {str(name): material for name, material in named}
 
     def _arrays(self) -> _native.Arrays:
-        return [mesh.arrays(f"mesh[{index}]") for index, mesh in enumerate(list(self.mesh))]
+        return [mesh.arrays(f"mesh[{index}]") for index, mesh in enumerate(list(self.meshes))]
 
     def _text(self) -> str:
         return json.dumps(self.plain())
@@ -178,7 +250,7 @@ class Scene(Value):
         if not isinstance(other, Scene):
             return NotImplemented
         same = self.plain() == other.plain()  # and as many meshes
-        return same and all(map(Mesh.same_triangles, self.mesh, other.mesh))
+        return same and all(map(Mesh.same_triangles, self.meshes, other.meshes))
 
     __hash__ = None
 
@@ -215,78 +287,94 @@ class Scene(Value):
         SceneError
             If there is no such key.
         """
-        said = json.dumps(plain(value, key))
-        text = _native.changed(self._text(), key, said)
+        text = _native.changed(self._text(), key, how_of.text(value, key))
         return self._of(text, self._arrays(), self.folder, self.name)
 
-    def _compiled(
-        self, width: int | None = None, height: int | None = None, integrator: str | None = None, spp: int | None = None
-    ) -> _native.NativeScene:
-        table = self.plain()
-        for key, setting in (("integrator", integrator), ("spp", spp)):
-            if setting is not None:
-                table["render"][key] = plain(setting, f"render.{key}")
-        text = json.dumps(table)
-        size = table["render"].get("size")
-        if (width, height) != (None, None) and isinstance(size, list) and len(size) == 2:
-            text = _native.resized(text, _size(width, height, size))
-        return _native.NativeScene(self.name, text, self._arrays(), Path(self.folder).absolute())
+    def _described(self) -> _native.NativeScene:
+        return _native.NativeScene(self.name, self._text(), self._arrays(), Path(self.folder).absolute())
+
+    def _compiled(self, how: Mapping[str, Any]) -> _native.NativeWorld:
+        width, height = how_of.size(how)
+        with how_of.naming_parameters(how):
+            return self._described().compiled(how_of.changes(how), width, height, None)
 
     def render(
         self,
         *,
         width: int | None = None,
         height: int | None = None,
-        integrator: str | None = None,
+        crop: Sequence[int] | None = None,
         spp: int | None = None,
+        depth: int | None = None,
+        seed: int | None = None,
+        integrator: str | None = None,
+        shadows: str | None = None,
         threads: int = 0,
         progress: bool | Callable[[int, int, int], object] = True,
     ) -> Picture:
         """Render the picture. Python's lock is free meanwhile, and the scene may be changed.
 
-        ^C, or Stop in a notebook, ends it with the picture so far: `Picture.finished` is False then.
+        What is left out is as `settings` and `camera` say; they stay as they are. ^C, or Stop in a notebook, ends it
+        with the picture so far: `Picture.finished` is False then.
 
         Parameters
         ----------
         width, height : int, optional
-            Another size in pixels; one alone keeps the shape. Pixels stay square: the view is widened if need be.
-        integrator : str, optional
-            Another model of light.
+            Another size in pixels, at least 1; one alone keeps the shape. Pixels stay square: the view is widened if
+            need be.
+        crop : (4,) of int, optional
+            Only a part: left column, top row, width and height in pixels of the whole picture. Its numbers are those
+            of `Picture.crop`.
         spp : int, optional
-            Samples per pixel.
+            Samples per pixel, 1 to 65536.
+        depth : int, optional
+            How many bounces may follow the camera ray, 0 to 1000: the ``max_depth`` of a file.
+        seed : int, optional
+            Another number spreads the samples otherwise, 0 to 4294967295.
+        integrator : {"whitted", "lecture", "course2018", "course2020"}, optional
+            Another model of light.
+        shadows : {"off", "opaque", "tinted"}, optional
+            What stands between a surface and a light.
         threads : int
-            0 for as many as the machine has.
+            0 to 4096; 0, the default, for as many as the machine has. It changes no bit of the picture.
         progress : bool or callable
-            A bar, on a terminal and in notebooks, for what takes longer; or what is called with pixels done, pixels in
-            all, and rays.
+            By default a bar, on a terminal and in notebooks, for what takes longer; False for none; or what is called
+            with pixels done, pixels in all, and rays.
 
         Raises
         ------
         SceneError
-            Naming the field that is wrong.
+            Naming the field or the parameter that is wrong.
         RenderError
             If the picture does not fit into memory.
 
         Examples
         --------
-        >>> picture = Scene.load("lecture/default").render(width=64)
+        >>> scene = Scene.load("lecture/default")
+        >>> picture = scene.render(width=64, spp=4, depth=2)
         >>> picture.array.shape, picture.array.dtype
         ((64, 64, 3), dtype('float64'))
+        >>> scene.render(width=64, crop=(16, 24, 32, 8))
+        <Picture of lecture/default, 32 x 8>
         """
-        how = {"width": width, "height": height, "integrator": integrator, "spp": spp}
-        picture = self._rendered(set(), threads=threads, progress=progress, **how)
-        if not picture.finished:
-            warn("stopped: the picture is what was done by then")
-        return picture
+        how: How = {"width": width, "height": height, "crop": crop, "spp": spp, "depth": depth, "seed": seed,
+                    "integrator": integrator, "shadows": shadows, "threads": threads}  # fmt: skip
+        return warned_if_stopped(self._rendered(set(), progress, how))
 
-    def view(self, *, css_height: str | None = None, **how: Any) -> View:
+    def view(
+        self,
+        *,
+        css_height: str | None = None,
+        progress: bool | Callable[[int, int, int], object] = True,
+        **how: Unpack[How],
+    ) -> View:
         """Show the scene in 3D, in a notebook: objects, lights, the camera with its picture, and rays of pixels.
 
         Parameters
         ----------
         css_height : str, optional
             Of the view, like ``"40rem"``.
-        **how
+        progress, **how
             What `render` takes.
 
         Examples
@@ -294,42 +382,67 @@ class Scene(Value):
         >>> Scene.load("gallery/ball").view(width=64)
         <View of gallery/ball, 64 x 43>
         """
-        return self.render(**how).view(css_height=css_height)
+        return self.render(progress=progress, **how).view(css_height=css_height)
+
+    def explain(self, x: int, y: int, **settings: Unpack[Settings]) -> RayTree:
+        """Say why a pixel has its colour, without rendering the others.
+
+        To see its rays in 3D, render the picture: ``scene.render().explain(x, y).view()``.
+
+        Parameters
+        ----------
+        x, y : int
+            Column and row, from the top left.
+        **settings
+            What `render` takes, but for `crop`, `threads` and `progress`.
+
+        Raises
+        ------
+        SceneError
+            Naming the field or the parameter that is wrong.
+        PictureError
+            If there is no such pixel.
+
+        Examples
+        --------
+        >>> Scene.load("lecture/default").explain(190, 300, depth=1).sentence[:20]
+        'Green because 53 % o'
+        """
+        x, y = (whole(number, "explain", PictureError) for number in (x, y))
+        world = self._compiled(how_of.said(settings, Settings))
+        width, height = world.size
+        if not (0 <= x < width and 0 <= y < height):
+            raise no_pixel(x, y, width, height)
+        return picture_of(world, self.name, set(), False, {"crop": (x, y, 1, 1)}).explain(0, 0)
 
     def _rendered(
-        self,
-        known: set[Finding],
-        *,
-        threads: int = 0,
-        progress: bool | Callable[[int, int, int], object] = True,
-        **how: Any,
+        self, known: set[Finding], progress: bool | Callable[[int, int, int], object], how: Mapping[str, Any]
     ) -> Picture:
         """Render, and warn of what is not known yet."""
-        if not (isinstance(threads, int | np.integer) and 0 <= threads <= _MOST_THREADS):
-            raise SceneError([("threads", f"expected 0 to {_MOST_THREADS}, read {threads!r}", None)])
-        compiled = self._compiled(**how)
-        _warn(compiled.warnings(), known)
-        with watcher(progress, self.name) as watch:
-            picture = Picture(compiled.render(int(threads), watch), self.name)
-        # Lost light is nothing odd: every hall of mirrors has some.
-        found = [text for code, text in picture._native.warnings() if code not in _REMARKS]
-        _warn([(None, text, None) for text in found], known)
-        return picture
+        how_of.threads(how)
+        how_of.region(how)
+        return picture_of(self._compiled(how), self.name, known, progress, how)
 
-    def find(self, name: str, *, progress: bool | Callable[[int, int, int], object] = True) -> Sightings:
+    def find(
+        self,
+        name: str,
+        *,
+        progress: bool | Callable[[int, int, int], object] = True,
+        **settings: Unpack[Settings],
+    ) -> Sightings:
         """Return where an object is seen, and by which ways.
 
         Parameters
         ----------
         name : str
             The object.
-        progress
-            As for `render`.
+        progress, **settings
+            What `render` takes, but for `crop` and `threads`.
 
         Raises
         ------
         SceneError
-            If no object is called so.
+            If no object is called so, or naming the field or the parameter that is wrong.
 
         Examples
         --------
@@ -339,11 +452,60 @@ class Scene(Value):
         """
         if not isinstance(name, str):
             raise SceneError([("name", f"expected the name of an object, read {name!r}", None)])
-        compiled = self._compiled()
-        _warn(compiled.warnings(), set())
+        world = self._compiled(how_of.said(settings, Settings))
+        _warn(world.warnings(), set())
         with watcher(progress, self.name) as watch:
-            paths, mask = compiled.find(name, watch)
+            paths, mask = world.find(name, watch)
         return Sightings(paths, mask)
+
+
+def warned_if_stopped(picture: Picture) -> Picture:
+    """Return a picture, with a warning if it is not finished."""
+    if not picture.finished:
+        warn("stopped: the picture is what was done by then")
+    return picture
+
+
+def _by_field(parts: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the parts of a scene by the names of its fields, where some may be keys of a file."""
+    found: dict[str, Any] = {}
+    for key, value in parts.items():
+        name = _FIELDS.get(key, key)
+        if name in found:
+            message = f"given twice: as `{Scene.called[name]}` and as `{name}`"
+            raise SceneError([(name, message, "leave one of them out")])
+        found[name] = value
+    return found
+
+
+def _taking_keys(init: Callable[..., None]) -> Callable[..., None]:
+    """Let the parameters of a scene have the keys of a file, too."""
+
+    @functools.wraps(init)
+    def taking_keys(self: Scene, **parts: Any) -> None:
+        init(self, **_by_field(parts))
+
+    return taking_keys
+
+
+Scene.__init__ = _taking_keys(Scene.__init__)  # type: ignore[method-assign]
+
+
+def picture_of(
+    world: _native.NativeWorld,
+    name: str,
+    known: set[Finding],
+    progress: bool | Callable[[int, int, int], object],
+    how: Mapping[str, Any],
+) -> Picture:
+    """Render what is compiled, and warn of what is not known yet."""
+    _warn(world.warnings(), known)
+    with watcher(progress, name) as watch:
+        picture = Picture(world.render(how_of.threads(how), how_of.region(how), watch), name)
+    # Lost light is nothing odd: every hall of mirrors has some.
+    found = [text for code, text in picture._native.warnings() if code not in _REMARKS]
+    _warn([(None, text, None) for text in found], known)
+    return picture
 
 
 def _warn(findings: Sequence[Finding], known: set[Finding]) -> None:
@@ -363,20 +525,6 @@ def _material_name(reference: object, names: list[str], place: str) -> object:
         return names[reference]
     have = f"there are {len(names)}, counted from 0" if names else "there are none"
     raise SceneError([(place, f"no material has the number {reference}: {have}", None)])
-
-
-def _size(width: int | None, height: int | None, before: list[int]) -> tuple[int, int]:
-    """Return a size of which one side may be left out."""
-    for place, side in (("width", width), ("height", height)):
-        fine = side is None or (isinstance(side, int | np.integer) and 0 < side < 2**32)
-        if not fine:
-            raise SceneError([(place, f"expected a number of pixels, at least 1, read {side!r}", None)])
-    old_width, old_height = (max(1, int(side)) for side in before)
-    if width is None and height is not None:
-        width = max(1, round(height * old_width / old_height))
-    if height is None and width is not None:
-        height = max(1, round(width * old_height / old_width))
-    return int(width or old_width), int(height or old_height)
 
 
 class Scenes(Mapping[str, Scene]):

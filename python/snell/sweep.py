@@ -8,19 +8,23 @@ import os
 import re
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+from . import how as how_of
 from ._native import __version__
 from .errors import Finding, PictureError, SceneError
 from .files import replacing
+from .how import How
 from .movie import png
 from .movie.frames import Sweep
 from .progress import Note, Watch, watcher
 from .scene import Scene
 from .values import plain
 
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
 _NOTES = "sweep.json"
-_HOW = ("width", "height", "integrator", "spp", "threads")  # what Scene.render takes
 _LIBRARY = re.compile(rb"^[ \t]*mtllib[ \t]+(.*\S)", re.MULTILINE)
 
 
@@ -30,7 +34,7 @@ def sweep(
     out: str | os.PathLike[str],
     *,
     progress: bool | Watch = True,
-    **how: Any,
+    **how: Unpack[How],
 ) -> Sweep:
     """Render a frame for each step of some values, and skip what is done already.
 
@@ -49,7 +53,7 @@ def sweep(
     progress : bool or callable
         A bar over all frames; or what is called with the pixels of all frames that are done, that there are, and rays.
     **how
-        What else `Scene.render` takes.
+        What else `Scene.render` takes: width, height, crop, spp, depth, seed, integrator, shadows, threads.
 
     Returns
     -------
@@ -59,7 +63,7 @@ def sweep(
     Raises
     ------
     SceneError
-        If the values are not of one length, `Scene.render` takes no such keyword, or a scene is wrong.
+        If the values are not of one length, `Scene.render` has no such parameter, or a scene is wrong.
     PictureError
         If a frame cannot be written.
 
@@ -75,12 +79,12 @@ def sweep(
     if not isinstance(values, Mapping):
         message = f"expected a dict of keys, each with a list of values, read {values!r}"
         raise SceneError([("values", message, 'like {"material.glass.eta": [1.0, 1.5]}')])
-    how = _keywords(how)
+    said = how_of.said(how, How)
     columns = {key: _column(key, column) for key, column in values.items()}
     lengths = {len(column) for column in columns.values()}
     if len(lengths) > 1:
-        said = ", ".join(f"{key} has {len(column)}" for key, column in columns.items())
-        raise SceneError([("values", f"expected as many values of each: {said}", None)])
+        counts = ", ".join(f"{key} has {len(column)}" for key, column in columns.items())
+        raise SceneError([("values", f"expected as many values of each: {counts}", None)])
 
     def changed(index: int) -> Scene:
         frame = scene
@@ -92,7 +96,7 @@ def sweep(
     frames = tuple(folder / f"{index:04}.png" for index in range(lengths.pop() if lengths else 1))
     triangles, contents = _triangles(scene), _Contents()
     # A wrong value is found now, before there is a folder.
-    made_of = [_digest(changed(index), triangles, contents, how) for index in range(len(frames))]
+    made_of = [_digest(changed(index), triangles, contents, said) for index in range(len(frames))]
     _make(folder)
     notes = _read(folder / _NOTES)
     missing = [
@@ -105,7 +109,7 @@ def sweep(
     with watcher(progress, scene.name, _note(len(frames), done)) as watch:
         for index in missing:
             within = watch and _within(watch, done, len(frames), rays)
-            picture = changed(index)._rendered(known, progress=within or False, **how)
+            picture = changed(index)._rendered(known, within or False, said)
             if not picture.finished:
                 raise KeyboardInterrupt
             picture.save(frames[index])
@@ -117,14 +121,6 @@ def sweep(
                 pixels = picture.width * picture.height
                 watch(done * pixels, len(frames) * pixels, rays)
     return Sweep(frames, columns)
-
-
-def _keywords(how: Mapping[str, Any]) -> dict[str, Any]:
-    """Return what is said of how to render, in one form of all that mean the same."""
-    for key in how:
-        if key not in _HOW:
-            raise SceneError([(key, "Scene.render takes no such keyword", f"known are {', '.join(_HOW)}, progress")])
-    return {key: plain(how[key], key) for key in _HOW if how.get(key) is not None}
 
 
 def _column(key: str, column: Iterable[object]) -> list[Any]:
@@ -181,7 +177,7 @@ def _read(path: Path) -> dict[str, str]:
 def _triangles(scene: Scene) -> str:
     """Return a digest of the triangles that no value of a sweep changes."""
     digest = hashlib.sha256()
-    for arrays in (mesh.arrays("mesh") for mesh in scene.mesh):
+    for arrays in (mesh.arrays("mesh") for mesh in scene.meshes):
         for array in arrays or ():
             digest.update(array.tobytes())
     return digest.hexdigest()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -23,7 +23,31 @@ Numbers = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Hit:
-    """What a ray met. Angles are in degrees, to the normal, before and behind the surface."""
+    """What a ray met.
+
+    Attributes
+    ----------
+    object : str
+        The name of the object.
+    primitive : int
+        The number of the sphere or triangle, from 0, in the order of the scene.
+    t : float
+        How far the ray went, in scene units; not negative.
+    point, normal : (float, float, float)
+        Where, in scene units; and the normal there, of unit length, towards the ray.
+    angle_in : float
+        Between the ray and the normal, in degrees, 0 to 90.
+    angle_out : float or None
+        Between the refracted ray and the normal behind the surface, in degrees; None where nothing goes on there.
+    eta_before, eta_behind : float
+        Indices of refraction on the side of the ray and behind the surface.
+    total_reflection : bool
+        Is all light reflected, as the angle is beyond the critical one?
+    material : str
+        The name of the material.
+    throughput : (float, float, float)
+        What of each unit of radiance from here reaches the sample, in red, green, blue.
+    """
 
     object: str
     primitive: int
@@ -41,7 +65,29 @@ class Hit:
 
 @dataclass(frozen=True)
 class LightThere:
-    """What a light does at a surface."""
+    """What a light does at a surface.
+
+    Attributes
+    ----------
+    name : str
+        The name of the light, or ``light`` and its number from 1.
+    facing : bool
+        Is the surface turned towards the light? Otherwise the light adds nothing.
+    transmittance : (float, float, float)
+        The share of the light that arrives: 1 where nothing is in its way, 0 where it is blocked.
+    blocked_by : str or None
+        The object that blocks it.
+    block_point : (float, float, float) or None
+        Where that does so, in scene units.
+    through : tuple of str
+        The objects that it comes through.
+    diffuse, highlight : (float, float, float)
+        What it adds, linear, before opacity and throughput weigh it.
+    point : (float, float, float)
+        Where the light stands, in scene units; at infinity, a direction towards it.
+    at_infinity : bool
+        Does it come from infinity?
+    """
 
     name: str
     facing: bool
@@ -57,7 +103,15 @@ class LightThere:
 
 @dataclass(frozen=True)
 class Local:
-    """The light that a surface itself sends out, before opacity and throughput weigh it."""
+    """The light that a surface itself sends out, before opacity and throughput weigh it.
+
+    Attributes
+    ----------
+    ambient, emission : (float, float, float)
+        Ambient light, and what the surface sends out by itself, linear.
+    lights : tuple of LightThere
+        What each light of the scene does here, in the order of the scene.
+    """
 
     ambient: Numbers
     emission: Numbers
@@ -66,7 +120,42 @@ class Local:
 
 @dataclass(frozen=True)
 class Node:
-    """A ray. The contributions of a sample's nodes, added one by one, are its colour to the bit."""
+    """A ray. The contributions of a sample's nodes, added one by one, are its colour to the bit.
+
+    Attributes
+    ----------
+    id : int
+        Its place in `Sample.nodes`, from 0.
+    parent : int or None
+        That of the ray before it; None for the camera ray.
+    depth : int
+        Bounces before it; 0 for the camera ray.
+    kind : {"camera", "mirror", "refracted", "inside"}
+        From the camera; mirrored in the open; out of something transparent, or through a thin pane; within a solid.
+    origin, dir : (float, float, float)
+        Where it starts, in scene units, and its direction, of unit length.
+    medium : str
+        The object that it is in, or ``outside``.
+    eta : float
+        The index of refraction there.
+    band_nm : float or None
+        Its wavelength in nm, if dispersion has split it.
+    throughput : (float, float, float)
+        What of each unit of radiance reaches the sample where the ray starts, in red, green, blue.
+    hit : Hit or None
+        What it met; None for nothing.
+    local : Local or None
+        The light that the surface itself sends along it; None where it met nothing, or something from within.
+    contribution : (float, float, float)
+        What its end adds to the sample, linear.
+    subtotal : (float, float, float)
+        The same with everything behind it.
+    ended : {"missed", "depth", "threshold", "rays", "absorbed"} or None
+        Why no ray follows: nothing met, too many bounces, too little carried, too many rays of the pixel, nothing sent
+        on; None if one follows.
+    bound : (float, float, float) or None
+        The most that it could still have added within ten more bounces, where it was not followed.
+    """
 
     id: int
     parent: int | None
@@ -88,7 +177,17 @@ class Node:
 
 @dataclass(frozen=True)
 class Sample:
-    """A sample of the pixel: its colour, the throughput of rays that were not followed, and its rays, parents first."""
+    """A sample of the pixel.
+
+    Attributes
+    ----------
+    color : (float, float, float)
+        Its colour, linear: the sum of the contributions of its nodes.
+    lost : (float, float, float)
+        The throughput of the rays that were not followed.
+    nodes : tuple of Node
+        Its rays, parents before their children.
+    """
 
     color: Numbers
     lost: Numbers
@@ -118,18 +217,20 @@ class Figure:
 
 
 class RayTree:
-    """Why a pixel has its colour, as `Picture.explain` says it.
+    """Why a pixel has its colour, as `Picture.explain` says it. A pickled tree takes its picture with it.
 
     Attributes
     ----------
     scene, integrator : str
+        The name of the scene, and its model of light.
     pixel, size : (int, int)
         Column and row; width and height of the whole picture.
     color : (float, float, float)
-        As in the film.
+        As in the film, linear.
     sentence : str
         What a person would say first.
     samples : tuple of Sample
+        As many as ``spp``, in their order.
 
     Examples
     --------
@@ -198,6 +299,11 @@ class RayTree:
         with replacing(path) as beside:
             beside.write_text(text, encoding="utf-8")
 
+    def __reduce__(self) -> tuple[Callable[[Picture, int, int], RayTree], tuple[Picture, int, int]]:
+        # Traced again, it has the same bits, and is smaller until then.
+        left, top = self._picture.region[:2]
+        return _explained, (self._picture, self.pixel[0] - left, self.pixel[1] - top)
+
     def __str__(self) -> str:
         return self.text()
 
@@ -206,6 +312,10 @@ class RayTree:
 
     def _repr_html_(self) -> str:
         return self._native.text_html()
+
+
+def _explained(picture: Picture, x: int, y: int) -> RayTree:
+    return picture.explain(x, y)
 
 
 def _tuples(table: Mapping[str, Any]) -> dict[str, Any]:

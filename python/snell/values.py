@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import difflib
 import math
 import operator
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import MISSING, Field, fields
-from typing import Any, ClassVar, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,17 +29,20 @@ class Value:
 
     #: Fields that are no keys of the file.
     beside: ClassVar[frozenset[str]] = frozenset()
+    #: Fields whose keys in the file are other ones.
+    called: ClassVar[Mapping[str, str]] = {}
     #: Fields that are colours, where one number is gray.
     colors: ClassVar[frozenset[str]] = frozenset()
 
     def plain(self, place: str = "") -> dict[str, Any]:
         """Return the form of the file: numbers, texts, lists and dictionaries; what is None is left out."""
         table = {}
-        for key in keys(type(self)):
-            value = getattr(self, key)
-            if value is not None:
+        for field in own_fields(type(self)):
+            value = getattr(self, field.name)
+            if value is not None and field.name not in self.beside:
+                key = self.called.get(field.name, field.name)
                 value = plain(value, join(place, key))
-                table[key] = gray(value) if key in self.colors else value
+                table[key] = gray(value) if field.name in self.colors else value
         return table
 
     @classmethod
@@ -58,6 +62,22 @@ class Value:
 
     __hash__ = None  # type: ignore[assignment] # they can be changed
 
+    if not TYPE_CHECKING:  # which knows the fields, and would take any name otherwise
+
+        def __setattr__(self, name: str, value: object) -> None:
+            if name not in self.__dataclass_fields__:  # a misspelt field would change nothing
+                raise self._no_field(name)
+            object.__setattr__(self, name, value)
+
+        def __getattr__(self, name: str) -> Any:
+            raise self._no_field(name)
+
+    def _no_field(self, name: str) -> AttributeError:
+        """Return what is wrong with the name of a field."""
+        near = difflib.get_close_matches(name, [field.name for field in own_fields(type(self))], 1)
+        meant = f"; did you mean `{near[0]}`?" if near else ""
+        return AttributeError(f"a {type(self).__name__} has no field `{name}`{meant}", name=name, obj=self)
+
     def __repr__(self) -> str:
         said = ((field, getattr(self, field.name)) for field in own_fields(type(self)))
         listed = (f"{field.name}={shown(value)}" for field, value in said if not is_default(field, value))
@@ -67,11 +87,6 @@ class Value:
 def own_fields(kind: type[Value]) -> tuple[Field[Any], ...]:
     """Return the fields of a dataclass; all kinds of values are some."""
     return fields(kind)  # type: ignore[arg-type]
-
-
-def keys(kind: type[Value]) -> list[str]:
-    """Return the keys of the file."""
-    return [field.name for field in own_fields(kind) if field.name not in kind.beside]
 
 
 def join(place: str, key: str) -> str:

@@ -17,38 +17,38 @@ NAN = float("nan")
 VERTICES, FACES = TETRAHEDRON
 
 BAD: list[tuple[str, dict[str, Any]]] = [
-    ("sphere[0].radius", {"sphere": [Sphere((0, 0, 0), -9, "red")]}),
-    ("sphere[0].radius", {"sphere": [Sphere((0, 0, 0), NAN, "red")]}),
-    ("sphere[0].radius", {"sphere": [Sphere((0, 0, 0), "nine", "red")]}),  # type: ignore[arg-type]
-    ("sphere[0].radius", {"sphere": [Sphere((0, 0, 0), 1j, "red")]}),  # type: ignore[arg-type]
-    ("sphere[0].center[2]", {"sphere": [Sphere((0, 0, np.inf), 1, "red")]}),
-    ("sphere[0].center", {"sphere": [Sphere((0, 0), 1, "red")]}),
-    ("sphere[0].center", {"sphere": [Sphere(np.zeros((3, 3)), 1, "red")]}),
-    ("sphere[1].material", {"sphere": [Sphere((0, 0, 0), 1, 0), Sphere((0, 0, 0), 1, 7)]}),
-    ("sphere[0].material", {"sphere": [Sphere((0, 0, 0), 1, -1)]}),
-    ("sphere[0].material", {"sphere": [Sphere((0, 0, 0), 1, "rde")]}),
-    ("sphere[0]", {"sphere": [Light((0, 0, 0), 1)]}),
-    ("sphere[0]", {"sphere": [42]}),
+    ("sphere[0].radius", {"spheres": [Sphere((0, 0, 0), -9, "red")]}),
+    ("sphere[0].radius", {"spheres": [Sphere((0, 0, 0), NAN, "red")]}),
+    ("sphere[0].radius", {"spheres": [Sphere((0, 0, 0), "nine", "red")]}),  # type: ignore[arg-type]
+    ("sphere[0].radius", {"spheres": [Sphere((0, 0, 0), 1j, "red")]}),  # type: ignore[arg-type]
+    ("sphere[0].center[2]", {"spheres": [Sphere((0, 0, np.inf), 1, "red")]}),
+    ("sphere[0].center", {"spheres": [Sphere((0, 0), 1, "red")]}),
+    ("sphere[0].center", {"spheres": [Sphere(np.zeros((3, 3)), 1, "red")]}),
+    ("sphere[1].material", {"spheres": [Sphere((0, 0, 0), 1, 0), Sphere((0, 0, 0), 1, 7)]}),
+    ("sphere[0].material", {"spheres": [Sphere((0, 0, 0), 1, -1)]}),
+    ("sphere[0].material", {"spheres": [Sphere((0, 0, 0), 1, "rde")]}),
+    ("sphere[0]", {"spheres": [Light((0, 0, 0), 1)]}),
+    ("sphere[0]", {"spheres": [42]}),
     ("camera.eye", {"camera": Camera("eye", (0, 0, 0), (0, 1, 0), fov=40)}),  # type: ignore[arg-type]
     ("camera", {"camera": None}),
     ("camera.width", {"camera": Camera((0, 0, 5), (0, 0, 0), (0, 1, 0), fov=40, width=7, height=7)}),
     ("render.integrator", {"settings": Render("lectrue", (4, 4))}),
     ("render.size", {"settings": Render("lecture", (0, 4))}),
     ("render.spp", {"settings": Render("lecture", (4, 4), spp=-1)}),
-    ("light[0]", {"light": [Light((0, 0, 0))]}),
-    ("material.red.kd", {"material": {"red": Material(kd=(1, 2))}}),
-    ("material.red.eta", {"material": {"red": Material(eta=0)}}),
-    ("material.red", {"material": {"red": 3}}),
+    ("light[0]", {"lights": [Light((0, 0, 0))]}),
+    ("material.red.kd", {"materials": {"red": Material(kd=(1, 2))}}),
+    ("material.red.eta", {"materials": {"red": Material(eta=0)}}),
+    ("material.red", {"materials": {"red": 3}}),
     ("eta_outside", {"eta_outside": 0}),
-    ("box[0].max", {"box": [Box((0, 0, 0), (1, 1, "x"), "red")]}),  # type: ignore[arg-type]
-    ("mesh[0].vertices", {"mesh": [Mesh(np.zeros((4, 2)), FACES, "red")]}),
-    ("mesh[0].vertices", {"mesh": [Mesh("corners", FACES, "red")]}),
-    ("mesh[0].vertices[0]", {"mesh": [Mesh([(NAN, 0, 0), *VERTICES[1:]], FACES, "red")]}),
-    ("mesh[0].faces", {"mesh": [Mesh(VERTICES, [(0, 1, 2.5)], "red")]}),
-    ("mesh[0].faces", {"mesh": [Mesh(VERTICES, [(0, 1, -2)], "red")]}),
-    ("mesh[0].faces", {"mesh": [Mesh(VERTICES, [(0, 1, NAN)], "red")]}),
-    ("mesh[0].faces[0]", {"mesh": [Mesh(VERTICES, [(0, 1, 9)], "red")]}),
-    ("mesh[0].file", {"mesh": [Mesh(file="nowhere.obj", material="red")]}),
+    ("box[0].max", {"boxes": [Box((0, 0, 0), (1, 1, "x"), "red")]}),  # type: ignore[arg-type]
+    ("mesh[0].vertices", {"meshes": [Mesh(np.zeros((4, 2)), FACES, "red")]}),
+    ("mesh[0].vertices", {"meshes": [Mesh("corners", FACES, "red")]}),
+    ("mesh[0].vertices[0]", {"meshes": [Mesh([(NAN, 0, 0), *VERTICES[1:]], FACES, "red")]}),
+    ("mesh[0].faces", {"meshes": [Mesh(VERTICES, [(0, 1, 2.5)], "red")]}),
+    ("mesh[0].faces", {"meshes": [Mesh(VERTICES, [(0, 1, -2)], "red")]}),
+    ("mesh[0].faces", {"meshes": [Mesh(VERTICES, [(0, 1, NAN)], "red")]}),
+    ("mesh[0].faces[0]", {"meshes": [Mesh(VERTICES, [(0, 1, 9)], "red")]}),
+    ("mesh[0].file", {"meshes": [Mesh(file="nowhere.obj", material="red")]}),
 ]
 
 
@@ -116,7 +116,7 @@ def test_a_scene_may_change_while_it_is_rendered() -> None:
     thread.start()
     while thread.is_alive():
         scene.ambient = 0.3
-        scene.sphere = [*scene.sphere, Sphere((0, 0, 0), 1, 0)][:4]
+        scene.spheres = [*scene.spheres, Sphere((0, 0, 0), 1, 0)][:4]
         scene.ambient = 0.2
     thread.join()
     changed = scene.replace(ambient=0.3).render(width=256).array.tobytes()
@@ -129,12 +129,12 @@ def test_arguments_of_another_kind_are_named() -> None:
     picture = scene.render(width=8)
     tree = picture.explain(1, 1)
     told: list[tuple[type[snell.SnellError], str, Callable[[], object]]] = [
-        (snell.SceneError, "render.spp", lambda: scene.render(spp=anything)),
-        (snell.SceneError, "render.integrator", lambda: scene.render(integrator=anything)),
+        (snell.SceneError, "spp", lambda: scene.render(spp=anything)),
+        (snell.SceneError, "integrator", lambda: scene.render(integrator=anything)),
         (snell.SceneError, "threads", lambda: scene.render(threads=anything)),
-        (snell.SceneError, "light", lambda: scene.replace(light=None).render()),
-        (snell.SceneError, "sphere", lambda: scene.replace(sphere=3).render()),
-        (snell.SceneError, "material", lambda: scene.replace(material="glass").render()),
+        (snell.SceneError, "light", lambda: scene.replace(lights=None).render()),
+        (snell.SceneError, "sphere", lambda: scene.replace(spheres=3).render()),
+        (snell.SceneError, "material", lambda: scene.replace(materials="glass").render()),
         (snell.SceneError, "folder", lambda: scene.replace(folder=3).render()),
         (snell.SceneError, "name", lambda: scene.find(anything)),
         (snell.SceneError, "path", lambda: Scene.load(cast(Any, b"a"))),

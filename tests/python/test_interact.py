@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 from typing import Any
 
 import pytest
 from IPython.core.interactiveshell import InteractiveShell
+from test_copies import everything, remove_files
 
 import snell
 from snell.notebook.view import View
@@ -71,11 +73,79 @@ def test_what_is_no_scene_or_has_no_such_index_is_said() -> None:
         snell.interact(SCENE, keys)
     odd_glass: Any = "x"
     with pytest.raises(snell.SceneError):
-        snell.interact(SCENE.replace(material={"glass": snell.Material(ko=odd_glass)}), eta=(1.0, 2.0))
+        snell.interact(SCENE.replace(materials={"glass": snell.Material(ko=odd_glass)}), eta=(1.0, 2.0))
     opaque = SCENE.with_("material.glass.ko", 1.0)
     for scene in (opaque, snell.scenes["gallery/prism"]):  # glass by name has no index of its own
         with pytest.raises(snell.SceneError, match="no material is transparent and has an index of its own"):
             snell.interact(scene, eta=(1.0, 2.0), width=8)
+
+
+#: Two values of every kind of thing.
+MOVED: dict[str, list[Any]] = {
+    "material.red.kd": [0.5, [0.2, 0.7, 0.1]],
+    "material.glass.eta": [1.5, 1.9],
+    "light.1.color": [1.0, 0.4],
+    "light.1.position": [[1, 2, 3], [-3, 1, 4]],
+    "camera.eye": [[0, 0, 5], [1, 0.5, 6]],
+    "camera.fov": [40, 55],
+    "ambient": [0.2, 0.7],
+    "sky.rotate": [0, 40],
+    "sky.brightness": [1, 2],
+    "render.max_depth": [32, 1],
+    "render.seed": [0, 9],
+    "render.size": [[24, 18], [20, 10]],
+    "render.shadows": ["opaque", "off"],
+    "sphere.ball.radius": [0.7, 0.4],
+    "mesh.tetra.transform": [[], [{"move": [0.4, 0, 0]}]],
+    "mesh.again.transform": [[{"move": [1, 0, -2]}], [{"move": [-1, 0, -2]}]],
+    "mesh.quad.instances": [[], [[{"move": [0, 1, 0]}], [{"move": [0, -1, 0]}]]],
+    "mesh.tetra.smooth_angle": [0, 90],
+    "texture.leaf.repeat": [[2, 2], [3, 1]],
+    "plane.leaf.size": [[1, 1], [2, 1]],
+}
+#: And of what decides which files are read, and how.
+READING: dict[str, list[Any]] = {
+    "texture.leaf.linear": [False, True],
+    "texture.leaf.image": ["leaf.png", "tiles.png"],
+    "sky.image": ["sky.png", "tiles.png"],
+    "mesh.again.material": ["red", "leaf"],
+    "mesh.quad.file": ["quad.obj", "./quad.obj"],
+    "render.integrator": ["whitted", "course2020"],
+}
+
+
+@pytest.mark.filterwarnings("ignore::snell.SnellWarning")
+def test_a_slider_shows_what_the_scene_is_rendered_anew(tmp_path: Path) -> None:
+    controls = MOVED | READING
+    moving = snell.interact(everything(tmp_path), controls, width=12, spp=2)
+    start = moving.picture.array.tobytes()
+    for key, (first, second) in controls.items():
+        moving.set(key, second)
+        expected = moving.scene.render(width=12, spp=2)
+        assert moving.picture.array.tobytes() == expected.array.tobytes(), key
+        assert moving.picture._repr_png_() == expected._repr_png_(), f"{key}: and the recipe"
+        moving.set(key, first)
+        assert moving.picture.array.tobytes() == start, key
+
+
+@pytest.mark.filterwarnings("ignore::snell.SnellWarning")
+def test_a_slider_reads_no_file_again(tmp_path: Path) -> None:
+    moving = snell.interact(everything(tmp_path), MOVED | READING, width=12)
+    remove_files(tmp_path)
+    for key, (_, second) in MOVED.items():
+        moving.set(key, second)
+    before = moving.picture
+    for key, (_, second) in READING.items():
+        with pytest.raises(snell.SceneError, match="is not there"):
+            moving.set(key, second)
+    assert moving.picture is before
+
+
+def test_what_has_one_value_is_a_setting_and_no_slider() -> None:
+    settings: dict[str, Any] = {"spp": 2, "seed": 3, "integrator": "whitted", "shadows": "off"}
+    assert snell.interact(SCENE, width=8, eta=(1.0, 2.0), **settings).values == {"material.glass.eta": 2.0}
+    sliders: dict[str, Any] = {"shadows": ["opaque", "off"], "integrator": ["lecture", "whitted"]}
+    assert set(snell.interact(SCENE, width=8, **sliders).values) == {"render.shadows", "render.integrator"}
 
 
 def test_a_value_that_cannot_be_drawn_changes_nothing() -> None:

@@ -202,8 +202,8 @@ def test_what_rendering_comes_upon_is_said() -> None:
         settings=snell.Render("whitted", max_depth=8),
         camera=camera,
         background=1.0,
-        material={"water": water, "glass": glass},
-        sphere=[drop, ball],
+        materials={"water": water, "glass": glass},
+        spheres=[drop, ball],
     )
     with pytest.warns(snell.SnellWarning, match="W008 overlap: `ball` and `drop` overlap"):
         picture = scene.render()

@@ -133,8 +133,8 @@ def test_a_changed_file_is_a_changed_scene(tmp_path: Path) -> None:
         Image.new("RGB", (2, 2), "#ff8000").save(path)
     scene = snell.scenes["lecture/default"].replace(
         settings=snell.Render("whitted", size=(16, 16)),
-        mesh=[snell.Mesh(file="a.obj")],
-        texture={"tiles": snell.Texture(image="tiles.png")},
+        meshes=[snell.Mesh(file="a.obj")],
+        textures={"tiles": snell.Texture(image="tiles.png")},
         sky=snell.Sky(image="sky.png"),
         folder=str(tmp_path),
     )
@@ -198,12 +198,13 @@ def test_what_is_no_sweep_is_said(tmp_path: Path) -> None:
             snell.sweep(scene, wrong, tmp_path / "frames")
     with pytest.raises(snell.SceneError, match=r"material\.glass\.eta: expected a list of values, one for each frame"):
         snell.sweep(scene, {"material.glass.eta": np.array(1.5)}, tmp_path / "frames")
-    with pytest.raises(
-        snell.SceneError, match=r"colour: Scene\.render takes no such keyword \(known are width, height"
+    how: dict[str, Any]
+    for how, said in (
+        ({"colour": 1}, r"colour: there is no such parameter \(known are width, height, .*, progress\)"),
+        ({"width": object()}, "width: expected a number, a text or a list"),
     ):
-        snell.sweep(scene, {}, tmp_path / "frames", colour=1)
-    with pytest.raises(snell.SceneError, match="width: expected a number, a text or a list"):
-        snell.sweep(scene, {}, tmp_path / "frames", width=object())
+        with pytest.raises(snell.SceneError, match=said):
+            snell.sweep(scene, {}, tmp_path / "frames", **how)
     with pytest.raises(snell.SceneError, match="Known here: glass"):
         snell.sweep(scene, {"material.gals.eta": [1]}, tmp_path / "frames")
     assert not (tmp_path / "frames").exists()

@@ -2,8 +2,8 @@
 
 use crate::errors::raise;
 use crate::picture::shaped;
-use crate::scene::Ready;
 use crate::watch::{unless_stopped, watched};
+use crate::world::Ready;
 use numpy::PyArray2;
 use pyo3::prelude::*;
 use snell::explain::text::{Piece, Style, text};
@@ -27,9 +27,10 @@ pub struct NativeTree {
 }
 
 impl NativeTree {
-    pub fn of(ready: &Arc<Ready>, x: u32, y: u32) -> Option<Self> {
-        let (explanation, _) = explain(&ready.world, &ready.scene, &ready.name, x, y)?;
-        Some(Self { explanation, ready: Arc::clone(ready) })
+    pub fn of(py: Python<'_>, ready: &Arc<Ready>, x: u32, y: u32) -> PyResult<Option<Self>> {
+        let world = ready.world(py)?;
+        let explained = py.detach(|| explain(world, &ready.scene, &ready.name, x, y));
+        Ok(explained.map(|(explanation, _)| Self { explanation, ready: Arc::clone(ready) }))
     }
 }
 
@@ -74,9 +75,9 @@ impl NativeTree {
     }
 
     /// The page with the rays in 3D.
-    fn html(&self, py: Python<'_>) -> String {
-        let names = Names { world: &self.ready.world, scene: &self.ready.scene };
-        py.detach(|| page(&self.explanation, &names))
+    fn html(&self, py: Python<'_>) -> PyResult<String> {
+        let names = Names { world: self.ready.world(py)?, scene: &self.ready.scene };
+        Ok(py.detach(|| page(&self.explanation, &names)))
     }
 }
 
@@ -89,7 +90,7 @@ pub type Seen<'py> = (Vec<(String, u64)>, Bound<'py, PyArray2<f64>>);
 
 /// Where an object is seen.
 pub fn find<'py>(py: Python<'py>, ready: &Ready, object: &str, progress: Option<&Py<PyAny>>) -> PyResult<Seen<'py>> {
-    let Ready { world, scene, .. } = ready;
+    let (world, scene) = (ready.world(py)?, &ready.scene);
     let known = world.object_names();
     if !known.contains(&object) {
         let message = format!("no object is called `{object}`");

@@ -8,9 +8,11 @@
 mod errors;
 mod explain;
 mod optics;
+mod pickle;
 mod picture;
 mod scene;
 mod watch;
+mod world;
 
 use pyo3::prelude::*;
 

@@ -2,10 +2,11 @@
 
 use crate::errors::{self, raise};
 use crate::explain::NativeTree;
-use crate::scene::Ready;
+use crate::pickle::ReadyState;
 use crate::watch::{unless_stopped, watched};
+use crate::world::Ready;
 use numpy::ndarray::{Array, ArrayView3, Dim, Dimension, ErrorKind, IntoDimension, ShapeError};
-use numpy::{PyArray, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray3};
+use numpy::{PyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray3};
 use pyo3::exceptions::{PyKeyboardInterrupt, PyRuntimeError};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -23,30 +24,58 @@ use std::sync::Arc;
 use std::time::Instant;
 
 /// A film, and the scene that it shows.
-#[pyclass(frozen)]
+#[pyclass(frozen, module = "snell._native")]
 pub struct NativePicture {
     film: Film,
     ready: Arc<Ready>,
     seconds: f64,
     rays: u64,
-    warnings: Vec<Warning>,
+    /// Number and name, and the whole text.
+    warnings: Vec<(String, String)>,
+}
+
+/// What a picture is pickled as.
+#[derive(FromPyObject, IntoPyObject)]
+#[pyo3(from_item_all)]
+struct PictureState<'py> {
+    ready: ReadyState<'py>,
+    full_size: (u32, u32),
+    region: (u32, u32, u32, u32),
+    numbers: Bound<'py, PyArray3<f64>>,
+    finished: Bound<'py, PyArray1<bool>>,
+    seconds: f64,
+    rays: u64,
+    warnings: Vec<(String, String)>,
 }
 
 impl NativePicture {
     /// Renders, and ^C ends it with what is done by then.
-    pub fn render(py: Python<'_>, ready: Arc<Ready>, threads: usize, progress: Option<&Py<PyAny>>) -> PyResult<Self> {
+    pub fn render(
+        py: Python<'_>,
+        ready: Arc<Ready>,
+        threads: usize,
+        crop: Option<Crop>,
+        progress: Option<&Py<PyAny>>,
+    ) -> PyResult<Self> {
         let started = Instant::now();
-        let (rendered, stopped) =
-            watched(py, threads, None, progress, |options| render(&ready.world, &Settings::of(&ready.scene), options));
+        let (world, settings) = (ready.world(py)?, Settings::of(&ready.scene));
+        let (rendered, stopped) = watched(py, threads, crop, progress, |options| render(world, &settings, options));
         let seconds = started.elapsed().as_secs_f64();
         match stopped {
             Some(error) if !error.is_instance_of::<PyKeyboardInterrupt>(py) => return Err(error),
             _ => {}
         }
-        let failed = |error: RenderError| raise(py, "RenderError", vec![(None, error.to_string(), None)]);
+        let failed = |error: RenderError| match error {
+            RenderError::CropOutside { .. } => {
+                raise(py, "SceneError", vec![(Some("crop".to_owned()), error.to_string(), None)])
+            }
+            _ => raise(py, "RenderError", vec![(None, error.to_string(), None)]),
+        };
         let Rendered { film, statistics } = rendered.map_err(failed)?;
-        let mut warnings = statistics.warnings(&ready.world, &Settings::of(&ready.scene));
-        warnings.extend(black_picture(&Names { world: &ready.world, scene: &ready.scene }, &film));
+        let black = black_picture(&Names { world, scene: &ready.scene }, &film);
+        let warnings = statistics.warnings(world, &settings).into_iter().chain(black);
+        let text = |warning: Warning| format!("{warning}{}", errors::advice(warning.code));
+        let warnings = warnings.map(|warning| (warning.code.code().to_owned(), text(warning))).collect();
         Ok(Self { film, ready, seconds, rays: statistics.rays.total(), warnings })
     }
 
@@ -61,8 +90,8 @@ impl NativePicture {
 
     /// What `snell render --from` needs to make it again, with the settings that the scene leaves out.
     fn recipe(&self) -> String {
-        let Ready { name, scene, text, folder, models, .. } = &*self.ready;
-        let mut recipe = Recipe::new(name, Kind::Json, text, folder, models);
+        let Ready { name, scene, folder, models, .. } = &*self.ready;
+        let mut recipe = Recipe::new(name, Kind::Json, &self.ready.text(), folder, models);
         let whole = self.film.crop.width == self.film.full_size[0] && self.film.crop.height == self.film.full_size[1];
         recipe.crop = (!whole).then_some(self.film.crop);
         recipe.resolve(scene);
@@ -119,9 +148,8 @@ impl NativePicture {
     }
 
     /// What was found while rendering: number and name, and the whole text.
-    fn warnings(&self) -> Vec<(&'static str, String)> {
-        let text = |warning: &Warning| format!("{warning}{}", errors::advice(warning.code));
-        self.warnings.iter().map(|warning| (warning.code.code(), text(warning))).collect()
+    fn warnings(&self) -> Vec<(String, String)> {
+        self.warnings.clone()
     }
 
     /// As a PNG of 8 bit.
@@ -152,8 +180,8 @@ impl NativePicture {
 
     /// What the camera's rays met: depth, normal, number of the object; and the names of the objects.
     fn channels<'py>(&self, py: Python<'py>, progress: Option<Py<PyAny>>) -> PyResult<NativeChannels<'py>> {
-        let Ready { world, scene, .. } = &*self.ready;
-        let (crop, settings) = (Some(self.film.crop), Settings::of(scene));
+        let (world, settings) = (self.ready.world(py)?, Settings::of(&self.ready.scene));
+        let crop = Some(self.film.crop);
         let work = watched(py, 0, crop, progress.as_ref(), |options| channels(world, &settings, options));
         let Channels { depth, normal, object } = unless_stopped(work)?;
         let normal: Vec<f64> = normal.into_iter().flatten().collect();
@@ -168,21 +196,66 @@ impl NativePicture {
 
     /// How many surfaces the rays of each pixel met.
     fn hits<'py>(&self, py: Python<'py>, progress: Option<Py<PyAny>>) -> PyResult<Bound<'py, PyArray2<u32>>> {
-        let Ready { world, scene, .. } = &*self.ready;
-        let (crop, settings) = (Some(self.film.crop), Settings::of(scene));
+        let (world, settings) = (self.ready.world(py)?, Settings::of(&self.ready.scene));
+        let crop = Some(self.film.crop);
         let work = watched(py, 0, crop, progress.as_ref(), |options| hits(world, &settings, options));
         shaped(py, self.shape(), unless_stopped(work)?)
     }
 
     /// The scene as the viewer draws it, in JSON.
-    fn view(&self) -> String {
-        let Ready { scene, world, .. } = &*self.ready;
-        serde_json::to_string(&ViewScene::of(&Names { world, scene })).unwrap_or_default()
+    fn view(&self, py: Python<'_>) -> PyResult<String> {
+        let names = Names { world: self.ready.world(py)?, scene: &self.ready.scene };
+        Ok(serde_json::to_string(&ViewScene::of(&names)).unwrap_or_default())
     }
 
     /// Why a pixel of the whole picture has its colour.
-    fn explain(&self, py: Python<'_>, x: u32, y: u32) -> Option<NativeTree> {
-        py.detach(|| NativeTree::of(&self.ready, x, y))
+    fn explain(&self, py: Python<'_>, x: u32, y: u32) -> PyResult<Option<NativeTree>> {
+        NativeTree::of(py, &self.ready, x, y)
+    }
+
+    /// From what `__getnewargs__` gave.
+    #[new]
+    fn new(py: Python<'_>, state: PictureState<'_>) -> PyResult<Self> {
+        let PictureState {
+            ready,
+            full_size,
+            region: (x, y, width, height),
+            numbers,
+            finished,
+            seconds,
+            rays,
+            warnings,
+        } = state;
+        let ready = Arc::new(ready.read(py)?);
+        let mut film = Film::new(full_size.into(), Crop { x, y, width, height })
+            .map_err(|error| raise(py, "PictureError", vec![(None, error.to_string(), None)]))?;
+        let numbers = numbers.readonly();
+        for (pixel, color) in film.pixels.iter_mut().zip(numbers.as_array().rows()) {
+            *pixel = Rgb::new(color[0], color[1], color[2]);
+        }
+        film.finished = finished.to_vec()?;
+        Ok(Self { film, ready, seconds, rays, warnings })
+    }
+
+    /// What a pickle of it holds.
+    fn __getnewargs__<'py>(slf: &Bound<'py, Self>) -> PyResult<(PictureState<'py>,)> {
+        let Self { film, ready, seconds, rays, warnings } = slf.get();
+        let state = PictureState {
+            ready: ReadyState::of(slf.py(), ready)?,
+            full_size: film.full_size.into(),
+            region: slf.get().region(),
+            numbers: Self::array(slf)?,
+            finished: PyArray1::from_slice(slf.py(), &film.finished),
+            seconds: *seconds,
+            rays: *rays,
+            warnings: warnings.clone(),
+        };
+        Ok((state,))
+    }
+
+    /// Itself: nothing of it can be changed.
+    fn __deepcopy__(slf: Py<Self>, _memo: Py<PyAny>) -> Py<Self> {
+        slf
     }
 }
 

@@ -1,38 +1,35 @@
-//! Scenes: from Python's JSON to a world, and from files to JSON. The arrays of meshes go beside the text.
+//! Scenes between Python and files, as JSON. The arrays of meshes go beside the text.
 
 use crate::errors::{self, Finding, raise};
-use crate::explain::Seen;
-use crate::picture::NativePicture;
+use crate::world::{NativeWorld, read_files, reads_the_same};
 use numpy::{PyArray2, PyReadonlyArray2};
 use pyo3::prelude::*;
 use snell::geometry::Vec3;
-use snell::geometry::bvh::Quality;
 use snell::scene::{Mesh, Scene};
-use snell::world::World;
-use snell_formats::load::{Kind, ModelFile, load, load_with};
+use snell_formats::load::load;
 use snell_formats::scene_file::{self, Syntax};
 use snell_formats::{LoadOptions, Report, Source, builtin};
 use std::path::PathBuf;
-use std::sync::Arc;
 
 pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<NativeScene>()?;
+    module.add_class::<NativeWorld>()?;
     module.add_function(wrap_pyfunction!(builtin_scenes, module)?)?;
     module.add_function(wrap_pyfunction!(read, module)?)?;
+    module.add_function(wrap_pyfunction!(parsed, module)?)?;
     module.add_function(wrap_pyfunction!(changed, module)?)?;
-    module.add_function(wrap_pyfunction!(resized, module)?)?;
     module.add_function(wrap_pyfunction!(write, module)?)
 }
 
 /// Vertices and faces of each mesh; `None` where it comes from a file.
-type Triangles<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<u32>>);
+pub type Triangles<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<u32>>);
 type Arrays<'py> = Vec<Option<Triangles<'py>>>;
 type ReadArrays<'py> = Vec<Option<(PyReadonlyArray2<'py, f64>, PyReadonlyArray2<'py, u32>)>>;
 
 type OwnTriangles = (Vec<[f64; 3]>, Vec<[u32; 3]>);
 
 /// The same in Rust.
-struct Inline(Vec<Option<OwnTriangles>>);
+pub struct Inline(Vec<Option<OwnTriangles>>);
 
 impl Inline {
     fn copy(arrays: ReadArrays<'_>) -> Self {
@@ -44,10 +41,14 @@ impl Inline {
         Self(arrays.into_iter().map(|mesh| mesh.map(copy)).collect())
     }
 
-    fn fill(self, scene: &mut Scene) {
-        for (mesh, arrays) in scene.meshes.iter_mut().zip(self.0) {
-            if let Some((vertices, faces)) = arrays {
-                (mesh.vertices, mesh.faces) = (vertices, faces);
+    /// Gives meshes their triangles, but for those that have been given others.
+    pub fn fill(&self, scene: &mut Scene) {
+        for (mesh, arrays) in scene.meshes.iter_mut().zip(&self.0) {
+            if let Some((vertices, faces)) = arrays
+                && mesh.file.is_none()
+                && mesh.faces.is_empty()
+            {
+                (mesh.vertices, mesh.faces) = (vertices.clone(), faces.clone());
             }
         }
     }
@@ -77,6 +78,21 @@ fn failed(py: Python<'_>, reports: &[Report], ours: Option<&Source>) -> PyErr {
     raise(py, "SceneError", reports.iter().map(|report| errors::report(report, ours)).collect())
 }
 
+/// A text that Python wrote.
+fn parse(py: Python<'_>, text: String) -> PyResult<(Source, Scene)> {
+    let source = Source::new(OURS, text);
+    match py.detach(|| scene_file::parse(&source, Syntax::Json)) {
+        Ok(scene) => Ok((source, scene)),
+        Err(report) => Err(failed(py, &[report], Some(&source))),
+    }
+}
+
+/// Changes a value, as `--set` does. The place of what is wrong with that is the key.
+fn set(scene: &mut Scene, key: &str, value: &str) -> Result<(), Finding> {
+    let changed = scene_file::set(scene, &format!("{key}={value}"));
+    changed.map(drop).map_err(|report| (Some(key.to_owned()), report.message.clone(), errors::help(&report)))
+}
+
 /// Names and texts of the built-in scenes.
 #[pyfunction]
 fn builtin_scenes() -> Vec<(&'static str, &'static str)> {
@@ -92,22 +108,18 @@ fn read(py: Python<'_>, name: String) -> PyResult<(String, Arrays<'_>, PathBuf)>
     Ok((text, arrays, loaded.folder))
 }
 
-/// A scene with one value changed, as `--set` does.
+/// A scene in JSON that someone else wrote.
 #[pyfunction]
-fn changed(py: Python<'_>, text: String, key: String, value: String) -> PyResult<String> {
-    let source = Source::new(OURS, text);
-    let mut scene = scene_file::parse(&source, Syntax::Json).map_err(|report| failed(py, &[report], Some(&source)))?;
-    scene_file::set(&mut scene, &format!("{key}={value}"))
-        .map_err(|report| raise(py, "SceneError", vec![(Some(key), report.message.clone(), errors::help(&report))]))?;
-    hand_over(py, scene).map(|(text, _)| text)
+fn parsed(py: Python<'_>, text: String) -> PyResult<(String, Arrays<'_>)> {
+    let (_, scene) = parse(py, text)?;
+    hand_over(py, scene)
 }
 
-/// A scene of another size in pixels, which stay square.
+/// A scene with one value changed.
 #[pyfunction]
-fn resized(py: Python<'_>, text: String, size: [u32; 2]) -> PyResult<String> {
-    let source = Source::new(OURS, text);
-    let mut scene = scene_file::parse(&source, Syntax::Json).map_err(|report| failed(py, &[report], Some(&source)))?;
-    scene.resize(size);
+fn changed(py: Python<'_>, text: String, key: String, value: String) -> PyResult<String> {
+    let (_, mut scene) = parse(py, text)?;
+    set(&mut scene, &key, &value).map_err(|finding| raise(py, "SceneError", vec![finding]))?;
     hand_over(py, scene).map(|(text, _)| text)
 }
 
@@ -127,66 +139,69 @@ fn write(py: Python<'_>, path: PathBuf, text: String, arrays: ReadArrays<'_>) ->
 }
 
 /// What the text that Python wrote is called.
-const OURS: &str = "the scene";
+pub const OURS: &str = "the scene";
 
-/// A compiled scene, with what its pictures need to know of it.
-pub struct Ready {
-    pub name: String,
-    pub scene: Scene,
-    pub world: World,
-    /// Its text, as a picture remembers it.
-    pub text: String,
-    pub folder: PathBuf,
-    pub models: Vec<ModelFile>,
-    warnings: Vec<Finding>,
+/// A scene as it is described. Nothing of it has been compiled, and no file been read.
+#[pyclass(frozen, module = "snell._native")]
+pub struct NativeScene {
+    name: String,
+    /// Without the triangles.
+    source: Source,
+    scene: Scene,
+    inline: Inline,
+    folder: PathBuf,
 }
-
-/// A compiled scene.
-#[pyclass(frozen)]
-pub struct NativeScene(Arc<Ready>);
 
 #[pymethods]
 impl NativeScene {
-    /// Compiles a scene.
+    /// Reads what Python says.
     #[new]
     fn new(py: Python<'_>, name: String, text: String, arrays: ReadArrays<'_>, folder: PathBuf) -> PyResult<Self> {
-        let source = Source::new(OURS, text);
-        let inline = Inline::copy(arrays);
-        let whole = inline.0.iter().all(Option::is_none);
-        let ready = py.detach(|| {
-            let options = LoadOptions::default();
-            let loaded = load_with(source.clone(), Kind::Json, &folder, &options, |scene| inline.fill(scene));
-            let loaded = loaded.map_err(|reports| findings(&reports, &source))?;
-            let world = World::build(&loaded.scene, Quality::default(), 0)
-                .map_err(|problems| problems.iter().map(errors::problem).collect::<Vec<Finding>>())?;
-            let mut warnings = findings(&loaded.warnings, &source);
-            warnings.extend(world.warnings.iter().map(|w| (Some(errors::path(&w.place)), w.to_string(), None)));
-            let mut text = source.text.to_string();
-            if !whole {
-                text = scene_file::to_text(&loaded.scene, Syntax::Json).map_err(|r| findings(&[r], &source))?;
-            }
-            let (scene, models) = (loaded.scene, loaded.models);
-            Ok(Ready { name, scene, world, text, folder, models, warnings })
+        let (source, scene) = parse(py, text)?;
+        Ok(Self { name, source, scene, inline: Inline::copy(arrays), folder })
+    }
+
+    /// Compiles it, with some values changed by the keys of `--set`, in another size, of which one side alone keeps the shape.
+    ///
+    /// `before` is the same scene with other values: its files are not read again if they are used in the same way, however
+    /// they have changed meanwhile.
+    fn compiled(
+        &self,
+        py: Python<'_>,
+        changes: Vec<(String, String)>,
+        width: Option<u32>,
+        height: Option<u32>,
+        before: Option<&NativeWorld>,
+    ) -> PyResult<NativeWorld> {
+        let mut scene = self.scene.clone();
+        let made = py.detach(|| {
+            changes.iter().try_for_each(|(key, value)| set(&mut scene, key, value)).map_err(|finding| vec![finding])?;
+            resize(&mut scene, width, height);
+            let before =
+                before.filter(|before| before.is_in(&self.folder) && reads_the_same(before.described(), &scene));
+            let read = match before {
+                Some(before) => before.read_like(&scene, &self.inline),
+                None if scene == self.scene => read_files(&self.source, &self.folder, &self.inline)?,
+                None => {
+                    let text = scene_file::to_text(&scene, Syntax::Json);
+                    let text = text.map_err(|report| vec![errors::report(&report, None)])?;
+                    read_files(&Source::new(OURS, text), &self.folder, &self.inline)?
+                }
+            };
+            NativeWorld::compile(self.name.clone(), scene, read, self.folder.clone())
         });
-        ready.map(|ready| Self(Arc::new(ready))).map_err(|findings| raise(py, "SceneError", findings))
-    }
-
-    /// What is odd: place, message, help.
-    fn warnings(&self) -> Vec<Finding> {
-        self.0.warnings.clone()
-    }
-
-    /// Renders a picture, and calls `progress(pixels, total, rays)` about twenty times a second while it lasts.
-    fn render(&self, py: Python<'_>, threads: usize, progress: Option<Py<PyAny>>) -> PyResult<NativePicture> {
-        NativePicture::render(py, Arc::clone(&self.0), threads, progress.as_ref())
-    }
-
-    /// Where an object is seen.
-    fn find<'py>(&self, py: Python<'py>, object: String, progress: Option<Py<PyAny>>) -> PyResult<Seen<'py>> {
-        crate::explain::find(py, &self.0, &object, progress.as_ref())
+        made.map_err(|findings: Vec<Finding>| raise(py, "SceneError", findings))
     }
 }
 
-fn findings(reports: &[Report], ours: &Source) -> Vec<Finding> {
-    reports.iter().map(|report| errors::report(report, Some(ours))).collect()
+/// Gives a picture another size. A side that is left out follows from the shape that it has.
+fn resize(scene: &mut Scene, width: Option<u32>, height: Option<u32>) {
+    let [old_width, old_height] = scene.render.size.map(|side| f64::from(side.max(1)));
+    let scaled = |side: u32, by: f64, of: f64| ((f64::from(side) * by / of).round_ties_even() as u32).max(1);
+    match (width, height) {
+        (Some(width), Some(height)) => drop(scene.resize([width, height])),
+        (Some(width), None) => drop(scene.resize([width, scaled(width, old_height, old_width)])),
+        (None, Some(height)) => drop(scene.resize([scaled(height, old_width, old_height), height])),
+        (None, None) => {}
+    }
 }

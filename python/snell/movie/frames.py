@@ -45,6 +45,7 @@ class Sweep(Sequence[Path]):
     Attributes
     ----------
     frames : tuple of Path
+        The files, in the order of the values.
     values : dict of str to list
         For each key, the value of each frame.
 

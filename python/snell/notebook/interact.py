@@ -6,11 +6,19 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import numpy as np
+
+from .. import _native
+from .. import how as how_of
 from ..errors import SceneError, SnellError
+from ..how import How
 from ..picture import Picture
-from ..scene import Scene
+from ..scene import Scene, picture_of, warned_if_stopped
 from . import controls as control_of
 from .still import Still, open_cell, show
+
+_SETTINGS = ("spp", "seed", "integrator", "shadows")  # of a render, and keys of a scene
+_SINGLE = (str, int, np.integer)
 
 #: Where a slider may go: lowest and highest, perhaps with a step; or a list to choose from; or False and True.
 Control = Sequence[Any]
@@ -23,9 +31,10 @@ def interact(
     *,
     width: int | None = None,
     height: int | None = None,
-    integrator: str | None = None,
-    spp: int | None = None,
-    **named: Control,
+    crop: Sequence[int] | None = None,
+    depth: int | None = None,
+    threads: int = 0,
+    **named: Control | int | str,
 ) -> Interactive:
     """Show a picture with sliders under it, which change the scene and render it anew.
 
@@ -36,11 +45,14 @@ def interact(
     controls : dict of str to sequence, optional
         By the keys of `Scene.with_`. ``(low, high)`` or ``(low, high, step)`` is a slider, of whole numbers if the
         value is one; a list is a menu, or a tick if it is ``[False, True]``.
-    width, height, integrator, spp
+    width, height, crop, depth, threads
         As for `Scene.render`.
     **named
-        More of them, by the last part of their key where only one has it: ``eta`` is ``material.glass.eta`` if only the
-        material ``glass`` is transparent.
+        More sliders, by the last part of their key where only one has it: ``eta`` is ``material.glass.eta`` if only the
+        material ``glass`` is transparent. With a single value ``spp``, ``seed``, ``integrator`` and ``shadows`` are
+        what they are for `Scene.render`: ``spp=4`` is a setting, ``spp=(1, 16)`` a slider.
+
+    Files of models and images are read once, when it starts.
 
     Returns
     -------
@@ -59,16 +71,17 @@ def interact(
     >>> ball
     <Interactive material.glass.eta=2.0>
     >>> ball.set("material.glass.eta", 2.42)
-    >>> ball.scene.material["glass"].eta
+    >>> ball.scene.materials["glass"].eta
     2.42
     """
     if not isinstance(scene, Scene):
         raise SceneError([("scene", f"expected a Scene, read {scene!r}", "snell.scenes and Scene.load have some")])
     if not (controls is None or (isinstance(controls, Mapping) and all(isinstance(key, str) for key in controls))):
         raise SceneError([("controls", f"expected keys with their values, read {controls!r}", None)])
-    how: dict[str, Any] = {"width": width, "height": height, "integrator": integrator, "spp": spp}
-    by_name = {control_of.key_of(scene, name): control for name, control in named.items()}
-    return Interactive(scene.replace(), {**(controls or {}), **by_name}, how)
+    how: dict[str, Any] = {"width": width, "height": height, "crop": crop, "depth": depth, "threads": threads}
+    how |= {name: named.pop(name) for name in _SETTINGS if isinstance(named.get(name), _SINGLE)}
+    sliders: dict[str, Any] = {control_of.key_of(scene, name): control for name, control in named.items()}
+    return Interactive(scene.replace(), {**(controls or {}), **sliders}, how)
 
 
 class Interactive:
@@ -76,26 +89,35 @@ class Interactive:
 
     Attributes
     ----------
-    scene : Scene
     picture : Picture
+        As it is now.
     values : dict of str to value
         By key, as they are now.
     """
 
-    scene: Scene
     picture: Picture
     values: dict[str, Any]
 
     def __init__(self, scene: Scene, controls: Mapping[str, Control], how: Mapping[str, Any]) -> None:
         now = {key: control_of.value_at(scene, key) for key in controls}
         self._controls = {key: control_of.checked(key, control, now[key]) for key, control in controls.items()}
-        self._how = how
+        self._how = how_of.said(how, How)
         self._start = scene
+        self._native = scene._described()
+        self._world: _native.NativeWorld | None = None
         self._stills: list[Still] = []
         self._widgets: dict[str, Any] = {}
         self._box: Any = None
         self._says: Any = None
         self._render({key: control_of.start(control, now[key]) for key, control in self._controls.items()})
+
+    @property
+    def scene(self) -> Scene:
+        """The scene as it is now."""
+        scene = self._start
+        for key, value in self.values.items():
+            scene = scene.with_(key, value)
+        return scene
 
     def set(self, key: str, value: object) -> None:
         """Move a slider: change a value, and the picture.
@@ -115,11 +137,13 @@ class Interactive:
             self._widgets[key].value = value
 
     def _render(self, values: dict[str, Any]) -> None:
-        scene = self._start
-        for key, value in values.items():
-            scene = scene.with_(key, value)
-        picture = scene.render(**self._how, progress=False)
-        self.scene, self.picture, self.values = scene, picture, values
+        changes = [(key, how_of.text(value, key)) for key, value in values.items()]
+        width, height = how_of.size(self._how)
+        with how_of.naming_parameters(self._how):
+            changes += how_of.changes(self._how)
+            world = self._native.compiled(changes, width, height, self._world)
+        picture = picture_of(world, self._start.name, set(), False, self._how)
+        self._world, self.picture, self.values = world, warned_if_stopped(picture), values
 
     def _ipython_display_(self) -> None:
         if not open_cell(self, self._stills, self.picture._repr_png_(), "Sliders need"):

@@ -1,0 +1,178 @@
+//! Compiled scenes, with what their pictures need to know of them.
+
+use crate::errors::{self, Finding, raise};
+use crate::explain::Seen;
+use crate::picture::NativePicture;
+use crate::scene::Inline;
+use pyo3::prelude::*;
+use snell::film::Crop;
+use snell::geometry::bvh::Quality;
+use snell::scene::{Mesh, Problem, Scene, Warning};
+use snell::world::World;
+use snell_formats::load::{Kind, ModelFile, load_with};
+use snell_formats::scene_file::{self, Syntax};
+use snell_formats::{LoadOptions, Report, Source};
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, OnceLock};
+
+/// A scene with its files.
+pub struct Read {
+    /// What is described, with the materials of its models, every mesh with its triangles.
+    scene: Scene,
+    models: Vec<ModelFile>,
+    /// What is odd about the files.
+    warnings: Vec<Finding>,
+}
+
+/// Reads the files of a scene, which Python wrote as a text and some triangles.
+pub fn read_files(source: &Source, folder: &Path, inline: &Inline) -> Result<Read, Vec<Finding>> {
+    let findings = |reports: &[Report]| reports.iter().map(|report| errors::report(report, Some(source))).collect();
+    let loaded = load_with(source.clone(), Kind::Json, folder, &LoadOptions::default(), |scene| inline.fill(scene));
+    let loaded = loaded.map_err(|reports| findings(&reports))?;
+    Ok(Read { warnings: findings(&loaded.warnings), scene: loaded.scene, models: loaded.models })
+}
+
+/// Do two scenes read the same files, in the same way?
+pub fn reads_the_same<'a>(a: &'a Scene, b: &'a Scene) -> bool {
+    read_by(a) == read_by(b)
+}
+
+/// All values that reading looks at.
+fn read_by(scene: &Scene) -> impl PartialEq {
+    // The normals of a model are spoken of where its mesh is flat.
+    let flat = |mesh: &Mesh| mesh.file.is_some() && mesh.smooth_angle == 0.0;
+    let meshes: Vec<_> = scene.meshes.iter().map(|m| (&m.file, &m.material, &m.materials, flat(m))).collect();
+    let materials: Vec<_> = scene.materials.iter().map(|(name, m)| (name, &m.texture)).collect();
+    let textures: Vec<_> = scene.textures.iter().map(|(name, t)| (name, &t.image, t.linear)).collect();
+    (scene.render.integrator, meshes, materials, textures, scene.sky.as_ref().map(|sky| &sky.image))
+}
+
+/// What pictures need to know of the scene that they show.
+pub struct Ready {
+    pub name: String,
+    /// What is described, without what files and arrays hold.
+    pub described: Scene,
+    /// The same with its files, and its triangles.
+    pub scene: Scene,
+    pub folder: PathBuf,
+    pub models: Vec<ModelFile>,
+    world: OnceLock<Result<World, Vec<Finding>>>,
+}
+
+impl Ready {
+    /// A scene that is compiled when someone asks for its world.
+    pub fn later(name: String, described: Scene, scene: Scene, folder: PathBuf, models: Vec<ModelFile>) -> Self {
+        Self { name, described, scene, folder, models, world: OnceLock::new() }
+    }
+
+    fn compiled(&self) -> Result<&World, &Vec<Finding>> {
+        let compile = || compile(&self.scene).map_err(|problems| problems.iter().map(errors::problem).collect());
+        self.world.get_or_init(compile).as_ref()
+    }
+
+    /// The world.
+    pub fn world(&self, py: Python<'_>) -> PyResult<&World> {
+        py.detach(|| self.compiled()).map_err(|findings| raise(py, "SceneError", findings.clone()))
+    }
+
+    /// The text of the scene, as a picture remembers it.
+    pub fn text(&self) -> String {
+        let mut scene = self.described.clone();
+        for (mesh, read) in scene.meshes.iter_mut().zip(&self.scene.meshes).filter(|(mesh, _)| mesh.file.is_none()) {
+            (mesh.vertices, mesh.faces) = (read.vertices.clone(), read.faces.clone());
+        }
+        // It was JSON before.
+        scene_file::to_text(&scene, Syntax::Json).unwrap_or_default()
+    }
+}
+
+/// Compiles a scene. Here, and nowhere else, a world is made; and here belongs the choice to make it of the world that stands
+/// for a scene with other materials, lights or another camera.
+fn compile(scene: &Scene) -> Result<World, Vec<Problem>> {
+    World::build(scene, Quality::default(), 0)
+}
+
+/// A compiled scene.
+#[pyclass(frozen, module = "snell._native")]
+pub struct NativeWorld {
+    ready: Arc<Ready>,
+    /// What is odd about the files, and about all of it.
+    read_warnings: Vec<Finding>,
+    warnings: Vec<Finding>,
+}
+
+impl NativeWorld {
+    pub fn compile(name: String, described: Scene, read: Read, folder: PathBuf) -> Result<Self, Vec<Finding>> {
+        let Read { scene, models, warnings: read_warnings } = read;
+        let ready = Ready::later(name, described, scene, folder, models);
+        let world = ready.compiled().map_err(Clone::clone)?;
+        let text = |w: &Warning| format!("{w}{}", errors::advice(w.code));
+        let of_world = world.warnings.iter().map(|w| (Some(errors::path(&w.place)), text(w), None));
+        let warnings = read_warnings.iter().cloned().chain(of_world).collect();
+        Ok(Self { ready: Arc::new(ready), read_warnings, warnings })
+    }
+
+    pub fn described(&self) -> &Scene {
+        &self.ready.described
+    }
+
+    /// Are the names of its files relative to this folder?
+    pub fn is_in(&self, folder: &Path) -> bool {
+        self.ready.folder == folder
+    }
+
+    /// A scene that reads the same files in the same way, with what was read for this one.
+    pub fn read_like(&self, described: &Scene, inline: &Inline) -> Read {
+        let Ready { scene: read, models, .. } = &*self.ready;
+        let mut scene = described.clone();
+        inline.fill(&mut scene);
+        for (mesh, read) in scene.meshes.iter_mut().zip(&read.meshes) {
+            mesh.geometry.clone_from(&read.geometry);
+            mesh.materials.clone_from(&read.materials);
+        }
+        // Models add materials and textures, behind those of the scene.
+        for (name, material) in &read.materials {
+            scene.materials.entry(name.clone()).or_insert_with(|| material.clone());
+        }
+        for (name, texture) in &read.textures {
+            let own = scene.textures.entry(name.clone()).or_insert_with(|| texture.clone());
+            own.pixels.clone_from(&texture.pixels);
+        }
+        if let (Some(sky), Some(read)) = (&mut scene.sky, &read.sky) {
+            sky.pixels.clone_from(&read.pixels);
+        }
+        Read { scene, models: models.clone(), warnings: self.read_warnings.clone() }
+    }
+}
+
+#[pymethods]
+impl NativeWorld {
+    /// Width and height of the picture in pixels.
+    #[getter]
+    fn size(&self) -> (u32, u32) {
+        self.ready.scene.render.size.into()
+    }
+
+    /// What is odd: place, message, help.
+    fn warnings(&self) -> Vec<Finding> {
+        self.warnings.clone()
+    }
+
+    /// Renders a picture, or a part of it (left, top, width, height), and calls `progress(pixels, total, rays)` about twenty
+    /// times a second while it lasts.
+    fn render(
+        &self,
+        py: Python<'_>,
+        threads: usize,
+        crop: Option<(u32, u32, u32, u32)>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<NativePicture> {
+        let crop = crop.map(|(x, y, width, height)| Crop { x, y, width, height });
+        NativePicture::render(py, Arc::clone(&self.ready), threads, crop, progress.as_ref())
+    }
+
+    /// Where an object is seen.
+    fn find<'py>(&self, py: Python<'py>, object: String, progress: Option<Py<PyAny>>) -> PyResult<Seen<'py>> {
+        crate::explain::find(py, &self.ready, &object, progress.as_ref())
+    }
+}
