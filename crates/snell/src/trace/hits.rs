@@ -4,7 +4,7 @@ use super::leaving::together_at_most;
 use super::queue::{Generation, Load, Weight};
 use crate::film::Rgb;
 use crate::geometry::Vec3;
-use crate::geometry::bvh::{Few, Nearest, PACKET, Packet};
+use crate::geometry::bvh::{FewSpheres, Nearest, PACKET, Packet};
 use crate::lanes::{Columns, Lanes, MAX_WIDTH, Mask, index};
 use crate::scene::{Integrator, Material};
 use crate::world::{Side, World};
@@ -45,7 +45,7 @@ pub(crate) struct Hits {
     /// How much of the surfaces is there, if there are patterns with holes; else empty.
     coverage: Columns<1>,
     /// Spheres that the rays may meet.
-    seen: Few,
+    seen: FewSpheres,
 }
 
 impl Hits {
@@ -64,7 +64,7 @@ impl Hits {
     #[inline(always)]
     pub fn find<L: Lanes>(&mut self, world: &World, rays: &impl Generation, packet: &mut Packet) {
         self.found.clear();
-        if let Some(spheres) = world.tree.few() {
+        if let Some(spheres) = world.tree.few_spheres() {
             let mut seen = std::mem::take(&mut self.seen);
             seen.clear();
             seen.extend(spheres.iter().filter(|(_, sphere)| rays.may_meet(sphere)));
@@ -81,7 +81,7 @@ impl Hits {
             self.seen = seen;
         } else {
             for first in (0..rays.len()).step_by(PACKET) {
-                let all = rays.fill::<L>(packet, first, world.tree.has_triangles());
+                let all = rays.fill::<L>(packet, first, world.tree.needs_shears());
                 let hit = world.tree.intersect::<L, false>(packet, all);
                 for start in (0..PACKET).step_by(L::WIDTH) {
                     let mask = L::Mask::from_bits((hit >> start) as u32);

@@ -83,7 +83,7 @@ impl ShadowRays {
                     lit = self.tint::<L>(media, &batch, start, lit, within, (wi, distance));
                 }
                 asked = asked & lit;
-                if let Some(spheres) = world.tree.few() {
+                if let Some(spheres) = world.tree.few_spheres() {
                     let t_min = if real_optics { 0.0 } else { T_MIN };
                     let nothing = Nearest::none(asked, L::splat(t_min), distance, source);
                     let hit = if real_optics {
@@ -152,7 +152,7 @@ impl ShadowRays {
         let world = media.world();
         let tinted = world.render.shadows() == Shadows::Tinted;
         let real_optics = world.render.integrator == Integrator::Whitted;
-        let shear = world.tree.has_triangles();
+        let shear = world.tree.needs_shears();
         for first in (0..self.rays.len()).step_by(PACKET) {
             let count = (self.rays.len() - first).min(PACKET);
             for start in (0..count).step_by(L::WIDTH) {
