@@ -10,6 +10,7 @@ pub mod scenes;
 pub mod spheres;
 
 use snell::geometry::bvh::{Bvh, MARGIN, Quality, Shapes};
+use snell::geometry::shape::Triangles;
 use snell::geometry::{Bounds, Sphere};
 use snell::render::{LaneWidth, Options};
 use snell::scene::{Problem, Scene};
@@ -36,7 +37,8 @@ pub fn build(scene: &Scene, threads: usize) -> Result<(World, Duration), String>
     }
     let sphere = |s: &snell::scene::Sphere| Sphere { center: s.center.into(), radius: s.radius };
     let spheres: Vec<Sphere> = scene.spheres.iter().map(sphere).collect();
-    let shapes = Shapes { spheres: &spheres, vertices: &vertices, faces: &faces, ..Shapes::default() };
+    let triangles = Triangles { vertices: &vertices, faces: &faces };
+    let shapes = Shapes { spheres: &spheres, triangles, ..Shapes::default() };
     let start = Instant::now();
     let everything = (0..shapes.count()).map(|i| shapes.bounds(i)).fold(Bounds::EMPTY, Bounds::union);
     let tree = Bvh::build(&shapes, vec![], MARGIN * everything.diagonal(), Quality::Good, threads);

@@ -149,7 +149,7 @@ impl Kernel for Closest<'_> {
     fn run<L: Lanes>(self) {
         let Self { world, rays, first, packet, t, primitive } = self;
         for start in (0..t.len()).step_by(PACKET) {
-            let all = rays.fill::<L>(packet, first + start, world.tree.has_triangles());
+            let all = rays.fill::<L>(packet, first + start, world.tree.needs_shears());
             let hit = world.tree.intersect::<L, false>(packet, all);
             let end = t.len().min(start + PACKET);
             t[start..end].copy_from_slice(&packet.t[..end - start]);
@@ -174,7 +174,7 @@ impl Kernel for Any<'_> {
     fn run<L: Lanes>(self) {
         let Self { world, rays, first, packet, blocked } = self;
         for (number, blocked) in blocked.chunks_mut(PACKET).enumerate() {
-            let all = rays.fill::<L>(packet, first + number * PACKET, world.tree.has_triangles());
+            let all = rays.fill::<L>(packet, first + number * PACKET, world.tree.needs_shears());
             let hit = world.tree.intersect::<L, true>(packet, all);
             for (i, blocked) in blocked.iter_mut().enumerate() {
                 *blocked = hit >> i & 1 == 1;

@@ -6,7 +6,7 @@ mod common;
 
 use common::{close, furnace, glass, mesh, picture, traced};
 use snell::film::Rgb;
-use snell::geometry::{Affine, TriangleMesh, Vec3, make, triangle};
+use snell::geometry::{Affine, TriangleMesh, Vec3, tessellate, triangle};
 use snell::render::{Options, Settings, render};
 use snell::scene::{Camera, Integrator, Light, Material, Render, Scene, Shadows, Sky, Transform, WarningCode};
 use snell::trace::Statistics;
@@ -83,10 +83,10 @@ fn octahedron() -> TriangleMesh {
 fn convex() -> Vec<(&'static str, TriangleMesh)> {
     let one = Vec3::new(1.0, 0.7, 0.4);
     vec![
-        ("box", make::cuboid(-one, one)),
+        ("box", tessellate::cuboid(-one, one)),
         ("octahedron", octahedron()),
         ("icosahedron", icosahedron()),
-        ("lathe", make::lathe(&[[0.0, -1.0], [0.8, -0.9], [1.0, 0.0], [0.7, 0.8], [0.0, 1.0]], 24)),
+        ("lathe", tessellate::lathe(&[[0.0, -1.0], [0.8, -0.9], [1.0, 0.0], [0.7, 0.8], [0.0, 1.0]], 24)),
         ("brilliant", Cut::default().brilliant().solid.mesh()),
     ]
 }
@@ -307,11 +307,12 @@ fn what_is_near_a_wall_is_in_its_shadow() {
 fn a_stretched_instance_leaves_shadows_alone() {
     let black = Rgb::gray(0.0);
     let chalk = Material { ka: black, kd: Rgb::gray(1.0), ks: black, ..Material::default() };
-    let level = |y: f64, half: f64| make::rectangle(Vec3::new(0.0, y, 0.0), Vec3::new(0.0, 1.0, 0.0), [half, half]);
+    let level =
+        |y: f64, half: f64| tessellate::rectangle(Vec3::new(0.0, y, 0.0), Vec3::new(0.0, 1.0, 0.0), [half, half]);
     for gap in [1e-8, 1e-9] {
         let mut scene = stage(level(0.0, 4.0), chalk.clone());
         mesh(&mut scene, level(gap, 1.0), "it");
-        mesh(&mut scene, make::cuboid(Vec3::new(-0.1, -0.1, -0.1), Vec3::new(0.1, 0.1, 0.1)), "it");
+        mesh(&mut scene, tessellate::cuboid(Vec3::new(-0.1, -0.1, -0.1), Vec3::new(0.1, 0.1, 0.1)), "it");
         let stretched = |x: f64| vec![Transform::Scale([1.0, 1e-6, 1.0]), Transform::Move([x, 1.0, 0.0])];
         scene.meshes[2].instances = vec![stretched(3.0), stretched(-3.0)];
         scene.lights.push(point_light(Vec3::new(0.3, 3.0, 0.2)));
@@ -352,7 +353,7 @@ fn a_smooth_solid_does_not_shade_itself() {
             .collect();
         let map =
             Affine::scaling(Vec3::new(size, size, size)).then(Affine::translation(Vec3::new(offset, offset, 0.0)));
-        let ball = make::lathe(&profile, 24).transformed(&map);
+        let ball = tessellate::lathe(&profile, 24).transformed(&map);
         let mut scene = stage(ball, Material { kd: Rgb::gray(1.0), ..Material::default() });
         scene.meshes[0].smooth_angle = 180.0;
         let at = |x: f64, y: f64, z: f64| map.apply(Vec3::<f64>::new(x, y, z));
@@ -406,9 +407,9 @@ fn glass_of_slivers_has_no_holes() {
     let closed = |radius: f64, height: f64| [[0.0, -height], [radius, -height], [radius, height], [0.0, height]];
     let solids = [
         ("cylinder of 1000", prism(1000, 1.0)),
-        ("cylinder of 4096", make::lathe(&closed(1.0, 1.0), 4096)),
-        ("lathe of 512", make::lathe(&[[0.0, -1.0], [1.0, -0.8], [0.4, 0.1], [0.9, 0.9], [0.0, 1.0]], 512)),
-        ("lathe of 4096", make::lathe(&[[0.0, -1.0], [1.0, -0.8], [0.4, 0.1], [0.9, 0.9], [0.0, 1.0]], 4096)),
+        ("cylinder of 4096", tessellate::lathe(&closed(1.0, 1.0), 4096)),
+        ("lathe of 512", tessellate::lathe(&[[0.0, -1.0], [1.0, -0.8], [0.4, 0.1], [0.9, 0.9], [0.0, 1.0]], 512)),
+        ("lathe of 4096", tessellate::lathe(&[[0.0, -1.0], [1.0, -0.8], [0.4, 0.1], [0.9, 0.9], [0.0, 1.0]], 4096)),
         ("disc of 4000", prism(4000, 0.01)),
     ];
     for (name, solid) in solids {
@@ -594,7 +595,7 @@ fn silver_on_glass_is_a_mirror() {
     for glass_first in [false, true] {
         if glass_first {
             scene.boxes.clear();
-            mesh(&mut scene, make::cuboid(Vec3::new(-10.0, -1.0, -10.0), Vec3::new(10.0, 0.0, 10.0)), "g");
+            mesh(&mut scene, tessellate::cuboid(Vec3::new(-10.0, -1.0, -10.0), Vec3::new(10.0, 0.0, 10.0)), "g");
         }
         let (film, world) = (picture(&scene), World::new(&scene).unwrap());
         for (number, pixel) in (0..).zip(&film.pixels) {

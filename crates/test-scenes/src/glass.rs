@@ -2,7 +2,7 @@
 
 use crate::build::{Numbers, sphere, stage};
 use snell::film::Rgb;
-use snell::geometry::{TriangleMesh, make};
+use snell::geometry::{TriangleMesh, tessellate};
 use snell::scene::{Cuboid, Integrator, Lathe, Light, Material, Mesh, Plane, Scene, Shadows, Sky, Texture, Transform};
 use snell::texture::Image;
 use std::sync::Arc;
@@ -175,5 +175,5 @@ pub fn windows() -> Scene {
 
 /// A box of twelve triangles that look outward, without texture coordinates.
 pub fn cuboid(min: [f64; 3], max: [f64; 3]) -> TriangleMesh {
-    TriangleMesh { uvs: vec![], face_uvs: vec![], ..make::cuboid(min.into(), max.into()) }
+    TriangleMesh { uvs: vec![], face_uvs: vec![], ..tessellate::cuboid(min.into(), max.into()) }
 }

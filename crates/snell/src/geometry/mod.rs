@@ -5,19 +5,18 @@ pub mod bounds;
 pub mod bvh;
 #[cfg(test)]
 pub(crate) mod exact;
-pub mod make;
 pub mod mesh;
 pub mod ray;
+pub mod shape;
 #[cfg(test)]
 mod soak;
 pub mod solid;
-pub mod sphere;
+pub mod tessellate;
 pub mod transform;
-pub mod triangle;
 pub mod vec3;
 
 pub use bounds::Bounds;
 pub use mesh::{NO_UVS, TriangleMesh};
-pub use sphere::Sphere;
+pub use shape::{Sphere, sphere, triangle};
 pub use transform::Affine;
 pub use vec3::Vec3;

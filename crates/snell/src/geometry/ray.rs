@@ -19,6 +19,18 @@ pub struct Heading<L = f64> {
     pub shear: [L; 2],
 }
 
+/// A ray, or several, as shapes are tested against it: everything in the order `axes`, which is that of the axes themselves for
+/// shapes that want no shear.
+#[derive(Clone, Copy, Debug)]
+pub struct Ray<L = f64> {
+    /// Where it starts.
+    pub origin: Vec3<L>,
+    /// Where it goes; the shears are of meaning in the order of its main axis only.
+    pub heading: Heading<L>,
+    /// Which component stands where.
+    pub axes: [usize; 3],
+}
+
 /// The order of the axes for a ray whose main axis, the one of its largest component, is this one.
 pub const fn axes(main: usize) -> [usize; 3] {
     match main {
@@ -40,6 +52,16 @@ pub fn main_axis(dir: Vec3) -> usize {
 #[inline(always)]
 pub fn inverse<L: Lanes>(component: L) -> L {
     (L::splat(1.0) / component).min(L::splat(f64::MAX)).max(L::splat(-f64::MAX))
+}
+
+impl<L: Lanes> Ray<L> {
+    /// For shapes that want no shears, and no inverse of the direction.
+    #[inline(always)]
+    pub fn unsheared(origin: Vec3<L>, dir: Vec3<L>) -> Self {
+        let zero = L::splat(0.0);
+        let heading = Heading { dir, inverse: Vec3::new(zero, zero, zero), shear: [zero; 2] };
+        Self { origin, heading, axes: [0, 1, 2] }
+    }
 }
 
 impl<L: Lanes> Heading<L> {

@@ -8,6 +8,7 @@ use super::area::largest_angle;
 use super::bvh::{Bvh, MARGIN, PACKET, Packet, Quality, Shapes};
 use super::exact::Exact;
 use super::ray::{Heading, axes, main_axis};
+use super::shape::Triangles;
 use super::{Affine, Bounds, Vec3, triangle};
 use crate::lanes::ArrayLanes;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -254,7 +255,8 @@ fn attack(dice: &mut Dice, count: &Count, rays: usize) {
     let bounds = Bounds::of(mesh.vertices.iter().copied());
     let size = bounds.diagonal();
     let corners: Vec<[Vec3; 3]> = mesh.faces.iter().map(|f| f.map(|v| mesh.vertices[v as usize])).collect();
-    let shapes = Shapes { vertices: &mesh.vertices, faces: &mesh.faces, ..Shapes::default() };
+    let triangles = Triangles { vertices: &mesh.vertices, faces: &mesh.faces };
+    let shapes = Shapes { triangles, ..Shapes::default() };
     // Rays start up to a thousand sizes away.
     let margin = MARGIN * (2e3 * size + bounds.farthest());
     let tree = Bvh::build(&shapes, vec![], margin, Quality::Good, 1);

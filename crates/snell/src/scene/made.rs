@@ -2,7 +2,7 @@
 
 use super::shape::is_zero;
 use super::{Mesh, Transform};
-use crate::geometry::make;
+use crate::geometry::tessellate;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -123,7 +123,7 @@ impl Plane {
     pub(crate) fn mesh(&self, index: usize) -> Mesh {
         Mesh {
             name: Some(named(self.name.as_ref(), "plane", index)),
-            geometry: Some(Arc::new(make::rectangle(self.center.into(), self.normal.into(), self.size))),
+            geometry: Some(Arc::new(tessellate::rectangle(self.center.into(), self.normal.into(), self.size))),
             material: Some(self.material.clone()),
             inside: self.inside.clone(),
             outside: self.outside.clone(),
@@ -139,7 +139,7 @@ impl Cuboid {
     pub(crate) fn mesh(&self, index: usize) -> Mesh {
         Mesh {
             name: Some(named(self.name.as_ref(), "box", index)),
-            geometry: Some(Arc::new(make::cuboid(self.min.into(), self.max.into()))),
+            geometry: Some(Arc::new(tessellate::cuboid(self.min.into(), self.max.into()))),
             material: Some(self.material.clone()),
             transform: self.transform.clone(),
             instances: self.instances.clone(),
@@ -153,7 +153,7 @@ impl Lathe {
     pub(crate) fn mesh(&self, index: usize) -> Mesh {
         Mesh {
             name: Some(named(self.name.as_ref(), "lathe", index)),
-            geometry: Some(Arc::new(make::lathe(&self.profile, self.segments))),
+            geometry: Some(Arc::new(tessellate::lathe(&self.profile, self.segments))),
             smooth_angle: self.smooth_angle,
             material: Some(self.material.clone()),
             inside: self.inside.clone(),

@@ -1,36 +1,8 @@
 //! Where on a texture a point of a surface lies, or a direction on the picture of what is all around.
 
 use crate::geometry::Vec3;
-use std::f64::consts::{PI, TAU};
-
-/// Where on a map of the world the point of a sphere lies that is in this direction from its centre; `y` points north.
-///
-/// `u` is the longitude as a part of a turn, 0 ≤ `u` < 1, eastward: seen from outside with north up, it grows to the right, so
-/// that the map is not mirrored. The map's centre (`u` = ½) looks to +z, its seam (`u` = 0) to −z; +x is at `u` = ¾. `v` is
-/// the latitude, from the south pole (0) over the equator (½) to the north pole (1).
-///
-/// The direction may have any length. At the poles `u` is ½; the zero vector is at (½, ½). The error is a few units in the
-/// last place of 1, at the poles too.
-pub fn sphere_uv(direction: Vec3) -> [f64; 2] {
-    let Vec3 { x, y, z } = direction;
-    if x == 0.0 && z == 0.0 {
-        return [
-            0.5,
-            if y > 0.0 {
-                1.0
-            } else if y < 0.0 {
-                0.0
-            } else {
-                0.5
-            },
-        ];
-    }
-    let turn = 0.5 + libm::atan2(x, z) / TAU;
-    // Halved where a sum of squares could be too large. An arc tangent keeps the digits that an arc sine loses near the poles.
-    let scale = if x.abs().max(z.abs()) > 1.0 { 0.5 } else { 1.0 };
-    let from_south = libm::atan2(libm::hypot(scale * x, scale * z), -scale * y);
-    [if turn >= 1.0 { 0.0 } else { turn }, from_south / PI]
-}
+pub use crate::geometry::shape::sphere::uv as sphere_uv;
+pub use crate::geometry::shape::triangle::barycentric;
 
 /// Where on a panorama in latitude and longitude, seen from inside, a direction lies; `y` points up.
 ///
@@ -40,28 +12,6 @@ pub fn sphere_uv(direction: Vec3) -> [f64; 2] {
 pub fn latlong_uv(direction: Vec3) -> [f64; 2] {
     // What is seen from inside is the map of the mirrored sphere.
     sphere_uv(Vec3::new(direction.x, direction.y, -direction.z))
-}
-
-/// Weights of the corners of a triangle at a point on it, each from 0 to 1; they add up to 1 but for a rounding.
-///
-/// The areas are those of the shadow on the coordinate plane that the triangle faces most, where it is largest. A point that
-/// lies beside the triangle, as hits do by a rounding, gets the weights of a place in it. A triangle without area gives its
-/// first corner.
-pub fn barycentric(corners: [Vec3; 3], point: Vec3) -> [f64; 3] {
-    let [a, b, c] = corners;
-    // Seen from a corner, so that far from the origin no digits are lost.
-    let (ab, ac, ap) = (b - a, c - a, point - a);
-    let whole = ab.cross(ac);
-    let size = [whole.x.abs(), whole.y.abs(), whole.z.abs()];
-    let axis = (0..3).fold(0, |best, axis| if size[axis] > size[best] { axis } else { best });
-    let share = |part: Vec3, most: f64| {
-        let share = part.component(axis) / whole.component(axis);
-        // NaN becomes 0 too: no area, or numbers that are none.
-        if share > 0.0 { share.min(most) } else { 0.0 }
-    };
-    let beta = share(ap.cross(ac), 1.0);
-    let gamma = share(ab.cross(ap), 1.0 - beta);
-    [1.0 - beta - gamma, beta, gamma]
 }
 
 /// The texture coordinates at a point of a triangle, from those of its corners and the [`barycentric`] weights.
@@ -74,6 +24,7 @@ mod tests {
     use super::*;
     use crate::lanes::elementary::sin_cos_degrees;
     use proptest::prelude::*;
+    use std::f64::consts::{PI, TAU};
 
     fn v(x: f64, y: f64, z: f64) -> Vec3 {
         Vec3::new(x, y, z)

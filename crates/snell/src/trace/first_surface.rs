@@ -45,7 +45,7 @@ impl Propagation for FirstSurface {
         _statistics: &mut Statistics,
     ) {
         hits.clear();
-        if let Some(spheres) = world.tree.few() {
+        if let Some(spheres) = world.tree.few_spheres() {
             let seen = hits.seen_of(spheres, rays);
             let all = if seen.is_empty() { 0 } else { rays.len() };
             for start in (0..all).step_by(L::WIDTH) {
@@ -61,7 +61,7 @@ impl Propagation for FirstSurface {
             hits.give_back(seen);
         } else {
             for first in (0..rays.len()).step_by(PACKET) {
-                let all = rays.fill::<L>(packet, first, world.tree.has_triangles());
+                let all = rays.fill::<L>(packet, first, world.tree.needs_shears());
                 let hit = world.tree.intersect::<L, false>(packet, all);
                 for start in (0..PACKET).step_by(L::WIDTH) {
                     let mask = L::Mask::from_bits((hit >> start) as u32);

@@ -6,7 +6,7 @@ use super::propagation::Propagation;
 use super::queue::{Generation, Outgoing, Ray};
 use crate::film::Rgb;
 use crate::geometry::Vec3;
-use crate::geometry::bvh::Few;
+use crate::geometry::bvh::FewSpheres;
 use crate::lanes::{Columns, Lanes, MAX_WIDTH, Mask, Number, Record, Row, Table, index, table};
 use crate::world::{CompiledMaterial, World};
 
@@ -56,7 +56,7 @@ pub(crate) struct Hits<P: Propagation> {
     /// How much of the surfaces is there, if there are patterns with holes; else empty.
     coverage: Columns<1>,
     /// Spheres that the rays may meet.
-    seen: Few,
+    seen: FewSpheres,
 }
 
 impl<P: Propagation> Default for Hits<P> {
@@ -71,7 +71,7 @@ impl<P: Propagation> Default for Hits<P> {
             contribution: Columns::default(),
             tints: Columns::default(),
             coverage: Columns::default(),
-            seen: Few::default(),
+            seen: FewSpheres::default(),
         }
     }
 }
@@ -91,7 +91,7 @@ impl<P: Propagation> Hits<P> {
 
     /// Those of a few spheres that rays may meet, in memory that is to be given back.
     #[inline(always)]
-    pub(super) fn seen_of(&mut self, spheres: &Few, rays: &impl Generation<P>) -> Few {
+    pub(super) fn seen_of(&mut self, spheres: &FewSpheres, rays: &impl Generation<P>) -> FewSpheres {
         let mut seen = std::mem::take(&mut self.seen);
         seen.clear();
         seen.extend(spheres.iter().filter(|(_, sphere)| rays.may_meet(sphere)));
@@ -100,7 +100,7 @@ impl<P: Propagation> Hits<P> {
 
     /// Keeps the memory of what [`seen_of`](Self::seen_of) has returned.
     #[inline(always)]
-    pub(super) fn give_back(&mut self, seen: Few) {
+    pub(super) fn give_back(&mut self, seen: FewSpheres) {
         self.seen = seen;
     }
 

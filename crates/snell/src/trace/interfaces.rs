@@ -268,7 +268,7 @@ impl<G: Generation<Interfaces>> Kernel for FindInterfaces<'_, '_, G> {
         hits.clear();
         packet.two_sided = true;
         for first in (0..rays.len()).step_by(PACKET) {
-            let all = rays.fill::<L>(packet, first, world.tree.has_triangles());
+            let all = rays.fill::<L>(packet, first, world.tree.needs_shears());
             let mut moved = 0;
             for start in (0..PACKET).step_by(L::WIDTH).filter(|&start| all >> start != 0) {
                 let (source, travel) = (rays.sources::<L>(first + start), rays.travel(first + start));
@@ -565,7 +565,7 @@ impl Paths {
             return Some(found);
         }
         self.crossings.retain(|&(t, primitive)| {
-            let starts = f64::from(primitive) == source && primitive as usize >= world.spheres.len();
+            let starts = f64::from(primitive) == source && !world.shape(primitive as usize).is_round();
             let leads_out = media.contains(before, world.solid_of(primitive as usize));
             !starts && (leads_out || leaving.meets(world, primitive, t))
         });

@@ -7,7 +7,7 @@
 use super::leaving::{Leaving, are_in_one_place};
 use super::pane::Pane;
 use crate::film::Rgb;
-use crate::geometry::{Bounds, Vec3, triangle};
+use crate::geometry::{Bounds, Vec3};
 use crate::optics::absorption::transmittance_rgb;
 use crate::optics::fresnel::fresnel_dielectric;
 use crate::optics::thin::slanted_pass;
@@ -135,10 +135,10 @@ impl<'a> Media<'a> {
             let enters = behind != NO_SOLID && world.enters(primitive as usize, behind, origin, dir, 0.0);
             self.contains(set, if enters { front } else { behind }) && !(enters && self.contains(set, behind))
         };
-        let distances = faces.into_iter().filter(|&face| leads_out(face)).map(|face| {
-            let corners = world.corners(face as usize);
-            (triangle::distance(corners, origin), face)
-        });
+        let distances = faces
+            .into_iter()
+            .filter(|&face| leads_out(face))
+            .map(|face| (world.shape(face as usize).distance(origin), face));
         let near = distances.filter(|&(distance, _)| distance <= world.clearance);
         near.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))).map(|(_, face)| face)
     }

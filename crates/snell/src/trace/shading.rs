@@ -98,7 +98,7 @@ impl ShadowRays {
                     lit = self.tint::<L, P>(scenery, &batch, start, lit, within, (wi, distance));
                 }
                 asked = asked & lit;
-                if let Some(spheres) = world.tree.few() {
+                if let Some(spheres) = world.tree.few_spheres() {
                     let nothing = Nearest::none(asked, L::splat(P::T_MIN), distance, source);
                     let hit = nothing.among(P::TWO_SIDED, spheres, point, wi).hit;
                     lit = if tinted {
@@ -157,7 +157,7 @@ impl ShadowRays {
     #[inline(always)]
     fn block<L: Lanes, P: Propagation>(&mut self, scenery: &mut Scenery<'_, '_, P>, hits: &Hits<P>) {
         let world = scenery.world;
-        let shear = world.tree.has_triangles();
+        let shear = world.tree.needs_shears();
         for first in (0..self.rays.len()).step_by(PACKET) {
             let count = (self.rays.len() - first).min(PACKET);
             for start in (0..count).step_by(L::WIDTH) {

@@ -6,7 +6,7 @@ use super::{NO_PRIMITIVE, NO_SOLID, Object, Solid, World};
 use crate::geometry::area::largest_angle;
 use crate::geometry::mesh::{MAX_SMOOTHED_VALENCE, NormalWeights};
 use crate::geometry::solid::{Options, repair, structure};
-use crate::geometry::{Affine, Bounds, TriangleMesh, Vec3, triangle};
+use crate::geometry::{Affine, Bounds, TriangleMesh, Vec3, shape, triangle};
 use crate::scene::{
     Integrator, LARGEST_NUMBER, Mesh, OpenMesh, Problem, Remedy, Step, Warning, WarningCode, whole_map,
 };
@@ -17,6 +17,12 @@ use indexmap::IndexMap;
 pub(super) struct Triangles {
     pub vertices: Vec<Vec3>,
     pub faces: Vec<[u32; 3]>,
+}
+
+impl Triangles {
+    pub fn list(&self) -> shape::Triangles<'_> {
+        shape::Triangles { vertices: &self.vertices, faces: &self.faces }
+    }
 }
 
 /// Which shape of a scene: the name of its list, and its number there.

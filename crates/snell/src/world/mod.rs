@@ -209,11 +209,7 @@ impl World {
 
     /// The smallest box around everything that is there; [`Bounds::EMPTY`] if nothing is.
     pub fn bounds(&self) -> Bounds {
-        let of = |primitive: usize| match self.spheres.get(primitive) {
-            Some(sphere) => sphere.bounds(),
-            None => Bounds::of(self.corners(primitive)),
-        };
-        (0..self.primitive_count()).map(of).fold(Bounds::EMPTY, Bounds::union)
+        (0..self.primitive_count()).map(|primitive| self.shape(primitive).bounds()).fold(Bounds::EMPTY, Bounds::union)
     }
 
     /// What the tree over the primitives is made of.

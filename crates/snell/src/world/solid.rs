@@ -5,7 +5,7 @@ use super::{NO_PRIMITIVE, World};
 use crate::film::Rgb;
 use crate::geometry::bvh::{Instance, Shapes};
 use crate::geometry::solid::{Component, EdgePlace, Found, Orientation, Report, Verdict, structure};
-use crate::geometry::{Affine, Bounds, TriangleMesh, Vec3, triangle};
+use crate::geometry::{Affine, Bounds, TriangleMesh, Vec3};
 
 /// "No solid", where the number of one is expected: a primitive that lets no light through.
 pub(crate) const NO_SOLID: u32 = u32::MAX;
@@ -228,12 +228,8 @@ impl World {
 
     /// Does a ray that crosses a primitive of this solid at `t` enter it?
     pub(crate) fn enters(&self, primitive: usize, solid: u32, origin: Vec3, dir: Vec3, t: f64) -> bool {
-        if let Some(sphere) = self.spheres.get(primitive) {
-            // The near root is before the point that is nearest to the centre.
-            return t < (sphere.center - origin).dot(dir);
-        }
         let mirrored = self.placement(primitive).is_some_and(|(placement, _)| placement.to_world.mirrors());
-        let (origin, dir, corners) = self.in_model(primitive, origin, dir);
-        triangle::is_front(origin, dir, corners) != (self.solids[solid as usize].inward != mirrored)
+        let (origin, dir, shape) = self.in_model(primitive, origin, dir);
+        shape.enters(origin, dir, t) != (self.solids[solid as usize].inward != mirrored)
     }
 }

@@ -2,6 +2,7 @@
 
 use super::mesh::MaterialIds;
 use super::{NO_SOLID, Object, Solid, World};
+use crate::geometry::shape::Surface;
 use crate::geometry::{Affine, Sphere, Vec3};
 use crate::scene::{self, LARGEST_NUMBER, Problem, Step, Warning, WarningCode, whole_map};
 

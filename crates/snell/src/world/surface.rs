@@ -3,8 +3,10 @@
 use super::{NO_SOLID, World};
 use crate::film::Rgb;
 use crate::geometry::area::area_vector;
+use crate::geometry::bvh::Bvh;
 use crate::geometry::ray::{Heading, axes, main_axis};
-use crate::geometry::{Affine, Bounds, Sphere, Vec3, sphere, triangle};
+use crate::geometry::shape::{AnyShape, Kind, Triangle};
+use crate::geometry::{Affine, Bounds, Vec3, triangle};
 use crate::lanes::{Lanes, MAX_WIDTH, Mask};
 use crate::scene::Shadows;
 
@@ -154,33 +156,18 @@ impl World {
     /// Is a crossing of the primitive on which a ray starts only its start? Not if it is the far wall of a sphere that the ray
     /// leaves inward. Distances do not tell: at a grazing angle they are off by much.
     pub(crate) fn starts_at(&self, primitive: usize, origin: Vec3, dir: Vec3, t: f64) -> bool {
-        self.spheres.get(primitive).is_none_or(|sphere| {
-            let v = (sphere.center - origin).dot(dir);
-            !(v > 0.0 && t > v)
-        })
+        self.shape(primitive).starts_at(origin, dir, t)
     }
 
     /// The unit normal of the face itself, outward.
     pub(crate) fn geometric_normal(&self, primitive: usize, point: Vec3) -> Vec3 {
-        match self.spheres.get(primitive) {
-            Some(sphere) => (point - sphere.center).unit(),
-            None => triangle::normal(self.corners(primitive)),
-        }
+        self.shape(primitive).normal(point)
     }
 
     /// Where a line meets a primitive; a sphere on the side on which it was met at about `t`.
     pub(crate) fn meets_at(&self, primitive: usize, origin: Vec3, dir: Vec3, t: f64) -> Option<f64> {
-        if let Some(&Sphere { center, radius }) = self.spheres.get(primitive) {
-            let middle = (center - origin).dot(dir);
-            let before = if t < middle { f64::NEG_INFINITY } else { middle };
-            let (t, meets) = sphere::crossing(origin, dir, center, radius, before, false);
-            return meets.then_some(t);
-        }
-        let (origin, dir, corners) = self.in_model(primitive, origin, dir);
-        let k = axes(main_axis(dir));
-        let heading = Heading::new(dir.permuted(k));
-        let hit = triangle::intersect::<f64>(origin.permuted(k), &heading, corners.map(|v| v.permuted(k)));
-        hit.meets.then_some(hit.t)
+        let (origin, dir, shape) = self.in_model(primitive, origin, dir);
+        shape.meets_at(origin, dir, t)
     }
 
     /// The face of the same object that looks at a ray and is in the place where the ray has met the back of an opaque one: along the
@@ -191,32 +178,37 @@ impl World {
         }
         let (object, mut faces) = (self.object_of(primitive as u32), Vec::new());
         self.tree.near(point, &mut faces);
-        let looks_at_it = |corners: [Vec3; 3]| triangle::normal(corners).dot(dir) < 0.0;
         let fronts = faces.into_iter().filter(|&face| {
-            let corners = self.corners(face as usize);
+            let shape = self.shape(face as usize);
             self.object_of(face) == object
-                && looks_at_it(corners)
-                && triangle::distance(corners, point) <= self.clearance
+                && shape.normal(point).dot(dir) < 0.0
+                && shape.distance(point) <= self.clearance
         });
         fronts.min()
     }
 
     /// Does a line along `dir` stay in the plane of a triangle, as far as hits are exact, all the way past it?
     pub(crate) fn is_edge_on(&self, primitive: usize, dir: Vec3) -> bool {
-        if primitive < self.spheres.len() {
-            return false;
-        }
-        let corners = self.corners(primitive);
-        triangle::normal(corners).dot(dir).abs() * Bounds::of(corners).diagonal() <= self.clearance
+        let shape = self.shape(primitive);
+        let bounds = shape.bounds();
+        !shape.is_round() && shape.normal(bounds.min).dot(dir).abs() * bounds.diagonal() <= self.clearance
     }
 
-    /// A ray and the corners of a triangle in the space in which the one meets the other: that of the model, for an instance.
-    pub(super) fn in_model(&self, primitive: usize, origin: Vec3, dir: Vec3) -> (Vec3, Vec3, [Vec3; 3]) {
-        match self.placement(primitive) {
-            None => (origin, dir, self.tree.corners(primitive)),
-            Some((Placement { model, to_model, .. }, id)) => {
-                (to_model.apply(origin), to_model.turn(dir), self.tree.model(*model).corners(id))
-            }
+    /// A primitive, in the space of the world.
+    pub(crate) fn shape(&self, primitive: usize) -> AnyShape {
+        match self.tree.shape(primitive) {
+            Some(shape) => shape,
+            None => Triangle { corners: self.corners(primitive) }.any(),
+        }
+    }
+
+    /// A ray and a primitive in the space in which the one meets the other: that of the model, for an instance.
+    pub(super) fn in_model(&self, primitive: usize, origin: Vec3, dir: Vec3) -> (Vec3, Vec3, AnyShape) {
+        let place = self.placement(primitive);
+        let in_model = place.and_then(|(place, id)| Some((place, self.tree.model(place.model).shape(id)?)));
+        match in_model {
+            None => (origin, dir, self.shape(primitive)),
+            Some((Placement { to_model, .. }, shape)) => (to_model.apply(origin), to_model.turn(dir), shape),
         }
     }
 
@@ -251,12 +243,13 @@ impl World {
         self.placement(primitive).map_or(0, |(placement, id)| self.models[placement.model].material_of[id])
     }
 
-    /// The corners of a triangle, in the space of the world.
+    /// The corners of a triangle, in the space of the world; of anything else only the origin.
     pub(crate) fn corners(&self, primitive: usize) -> [Vec3; 3] {
+        let corners = |tree: &Bvh, id: usize| tree.get::<Triangle>(id).map_or([Vec3::default(); 3], |t| t.corners);
         match self.placement(primitive) {
-            None => self.tree.corners(primitive),
+            None => corners(&self.tree, primitive),
             Some((placement, id)) => {
-                self.tree.model(placement.model).corners(id).map(|corner| placement.to_world.apply(corner))
+                corners(self.tree.model(placement.model), id).map(|corner| placement.to_world.apply(corner))
             }
         }
     }

@@ -5,7 +5,7 @@ use super::material::NONE;
 use crate::film::Rgb;
 use crate::geometry::{Affine, Vec3};
 use crate::scene::{Problem, Scene, Sky, Step, Texture};
-use crate::texture::{Image, barycentric, checker, latlong_uv, sphere_uv};
+use crate::texture::{Image, checker, latlong_uv, sphere_uv};
 use std::sync::Arc;
 
 /// A pattern that is ready to be looked at.
@@ -156,15 +156,14 @@ impl World {
     /// By what the colour of a surface is multiplied at a point on it, and how much of the surface is there.
     pub(crate) fn pattern_at(&self, primitive: usize, point: Vec3) -> (Rgb, f64) {
         let Some(pattern) = self.texture_of(self.material_of(primitive)) else { return (Rgb::gray(1.0), 1.0) };
-        let uv = match self.spheres.get(primitive) {
-            Some(sphere) => {
-                let from_center = point - sphere.center;
-                sphere_uv(self.sphere_turns.get(primitive).map_or(from_center, |turn| turn.turn(from_center)))
-            }
-            None => self.corner_uvs(primitive).map_or([0.0; 2], |[a, b, c]| {
-                let [p, q, r] = barycentric(self.corners(primitive), point);
+        let uv = if let (Some(sphere), Some(turn)) = (self.spheres.get(primitive), self.sphere_turns.get(primitive)) {
+            sphere_uv(turn.turn(point - sphere.center))
+        } else {
+            let own @ [q, r] = self.shape(primitive).uv(point);
+            self.corner_uvs(primitive).map_or(own, |[a, b, c]| {
+                let p = 1.0 - q - r;
                 [a[0] * p + b[0] * q + c[0] * r, a[1] * p + b[1] * q + c[1] * r]
-            }),
+            })
         };
         self.patterns[pattern as usize].at(uv)
     }

@@ -13,8 +13,7 @@ impl World {
             let place = vec![Step::from(kind), Step::from(index), Step::from("instances")];
             Problem { place, message, help: None, remedy: None }
         };
-        let Triangles { vertices, faces } = &parts.triangles;
-        let shapes = Shapes { spheres: &self.spheres, vertices, faces, instances: &[] };
+        let shapes = Shapes { spheres: &self.spheres, triangles: parts.triangles.list(), ..Shapes::default() };
         if shapes.count() + parts.placed.len() >= 1 << 31 {
             let message = "more than 2 billion spheres and triangles".to_owned();
             return Err(Problem { place: vec![Step::from("mesh")], message, help: None, remedy: None });
@@ -70,12 +69,11 @@ impl World {
             }
         }
         self.behind = 0.5 * self.clearance;
-        let models =
-            parts.models.iter().zip(seen.iter().zip(norms)).map(|(Triangles { vertices, faces }, (seen, norm))| {
-                let shapes = Shapes { vertices, faces, ..Shapes::default() };
-                let margin = (MARGIN * (seen.diagonal() + seen.farthest())).max(norm * self.clearance);
-                Bvh::build(&shapes, vec![], margin, quality, threads)
-            });
+        let models = parts.models.iter().zip(seen.iter().zip(norms)).map(|(model, (seen, norm))| {
+            let shapes = Shapes { triangles: model.list(), ..Shapes::default() };
+            let margin = (MARGIN * (seen.diagonal() + seen.farthest())).max(norm * self.clearance);
+            Bvh::build(&shapes, vec![], margin, quality, threads)
+        });
         let models = models.collect();
         let touching = self.touching(&shapes, &instances);
         let shapes = Shapes { instances: &instances, ..shapes };

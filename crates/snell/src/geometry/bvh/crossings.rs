@@ -3,44 +3,36 @@
 use super::Bvh;
 use super::build::MOST_WAITING;
 use super::node::{Child, Kind, Node, WIDTH, plane};
-use super::primitives::{SPHERE, TRIANGLE};
-use crate::geometry::ray::{Heading, axes, inverse, main_axis};
-use crate::geometry::{Vec3, sphere, triangle};
+use super::primitives::{INSTANCES, RunOf};
+use crate::geometry::Vec3;
+use crate::geometry::ray::{Heading, Ray, axes, main_axis};
+use crate::geometry::shape::{self, ForKind, One, of_kind};
 
-/// What a ray needs for every box and triangle.
+/// What a ray needs for every box and shape.
 struct Line {
-    origin: Vec3,
-    dir: Vec3,
     range: [f64; 2],
-    /// For each axis the inverse of the direction, and whether boxes are entered at their high side.
-    inverse: [f64; 3],
+    /// As it is, and in the order of its main axis.
+    plain: Ray,
+    sheared: Ray,
+    /// For each axis whether boxes are entered at their high side.
     backward: [bool; 3],
-    /// Origin and heading along its main axis.
-    axes: [usize; 3],
-    permuted: Vec3,
-    heading: Heading<f64>,
 }
 
 impl Line {
     fn new(origin: Vec3, dir: Vec3, range: [f64; 2]) -> Self {
-        let (inverse, axes) = ([0, 1, 2].map(|axis| inverse(dir.component(axis))), axes(main_axis(dir)));
-        Self {
-            origin,
-            dir,
-            range,
-            inverse,
-            backward: inverse.map(|i| i < 0.0),
-            axes,
-            permuted: origin.permuted(axes),
-            heading: Heading::new(dir.permuted(axes)),
-        }
+        let ray = |axes| Ray { origin: origin.permuted(axes), heading: Heading::new(dir.permuted(axes)), axes };
+        let (plain, sheared) = (ray([0, 1, 2]), ray(axes(main_axis(dir))));
+        let backward = [0, 1, 2].map(|axis| plain.heading.inverse.component(axis) < 0.0);
+        Self { range, plain, sheared, backward }
     }
 
     /// Which boxes of a node does the line meet within its range? A bit for each.
     fn meets(&self, node: &Node) -> u32 {
         let [mut enter, mut leave] = self.range.map(|t| [t; WIDTH]);
         for axis in 0..3 {
-            let (o, i, side) = (self.origin.component(axis), self.inverse[axis], usize::from(self.backward[axis]));
+            let Ray { origin, heading, .. } = &self.plain;
+            let (o, i, side) =
+                (origin.component(axis), heading.inverse.component(axis), usize::from(self.backward[axis]));
             let (near, far) = (&node.planes[plane(axis, side)], &node.planes[plane(axis, 1 - side)]);
             for place in 0..WIDTH {
                 enter[place] = ((f64::from(near[place]) - o) * i).max(enter[place]);
@@ -60,7 +52,7 @@ impl Bvh {
         found[before..].sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     }
 
-    /// Appends every triangle whose box, with its margin, holds a point.
+    /// Appends every primitive whose box, with its margin, holds a point.
     pub(crate) fn near(&self, point: Vec3, found: &mut Vec<u32>) {
         self.collect_near(point, 0, found);
     }
@@ -80,13 +72,16 @@ impl Bvh {
                     waiting.extend((0..WIDTH).filter(|&place| holds(node, place)).map(|place| node.child[place]));
                 }
                 Kind::Block(block) => {
-                    let triangles = &self.primitives.numbers[block.at + SPHERE * block.spheres..];
-                    let ids = &triangles[(TRIANGLE - 1) * block.triangles..][..block.triangles];
-                    found.extend(ids.iter().map(|&id| first_id + id as u32));
-                    for &number in &triangles[TRIANGLE * block.triangles..][..block.instances] {
-                        let instance = &self.instances[number as usize];
-                        let (model, first_id) = (&self.models[instance.model], first_id + instance.first);
-                        model.collect_near(instance.to_model.apply(point), first_id, found);
+                    for run in self.primitives.runs(block) {
+                        if run.kind != INSTANCES {
+                            found.extend(run.ids().iter().map(|&id| first_id + id as u32));
+                            continue;
+                        }
+                        for &number in run.ids() {
+                            let instance = &self.instances[number as usize];
+                            let (model, first_id) = (&self.models[instance.model], first_id + instance.first);
+                            model.collect_near(instance.to_model.apply(point), first_id, found);
+                        }
                     }
                 }
                 Kind::Leaf(_) | Kind::Nothing => {}
@@ -119,35 +114,41 @@ impl Bvh {
     }
 
     fn collect_in_leaf(&self, leaf: Child, line: &Line, first_id: u32, found: &mut Vec<(f64, u32)>) {
-        let (block, &Line { origin, dir, range, .. }) = (leaf.place(), line);
-        let mut offer = |t: f64, meets: bool, id: f64| {
-            if meets && t >= range[0] && t <= range[1] {
-                found.push((t, first_id + id as u32));
+        for run in self.primitives.runs(leaf.place()) {
+            if run.kind != INSTANCES {
+                of_kind(run.kind, Cross { line, run, first_id, found });
+                continue;
             }
-        };
-        let numbers = &self.primitives.numbers[block.at..];
-        for i in 0..block.spheres {
-            let [x, y, z, radius, id] = [0, 1, 2, 3, 4].map(|column| numbers[column * block.spheres + i]);
-            let center = Vec3::new(x, y, z);
-            let before = f64::NEG_INFINITY;
-            let (near, meets) = sphere::crossing::<f64>(origin, dir, center, radius, before, false);
-            let (far, _) = sphere::crossing::<f64>(origin, dir, center, radius, near, false);
-            offer(near, meets, id);
-            offer(far, meets, id);
+            for &number in run.ids() {
+                let (instance, Ray { origin, heading, .. }) = (&self.instances[number as usize], &line.plain);
+                let (origin, dir) = (instance.to_model.apply(*origin), instance.to_model.turn(heading.dir));
+                let line = Line::new(origin, dir, line.range);
+                self.models[instance.model].collect(&line, first_id + instance.first, found);
+            }
         }
-        let numbers = &numbers[SPHERE * block.spheres..];
-        for i in 0..block.triangles {
-            let number = |column: usize| numbers[column * block.triangles + i];
-            let corners = [0, 3, 6].map(|c| Vec3::new(number(c), number(c + 1), number(c + 2)).permuted(line.axes));
-            let hit = triangle::intersect::<f64>(line.permuted, &line.heading, corners);
-            offer(hit.t, hit.meets, number(TRIANGLE - 1));
-        }
-        let numbers = &numbers[TRIANGLE * block.triangles..][..block.instances];
-        for &number in numbers {
-            let instance = &self.instances[number as usize];
-            let (origin, dir) = (instance.to_model.apply(origin), instance.to_model.turn(dir));
-            let line = Line::new(origin, dir, range);
-            self.models[instance.model].collect(&line, first_id + instance.first, found);
+    }
+}
+
+/// Appends the crossings of the primitives of a run.
+struct Cross<'a> {
+    line: &'a Line,
+    run: RunOf<'a>,
+    first_id: u32,
+    found: &'a mut Vec<(f64, u32)>,
+}
+
+impl ForKind for Cross<'_> {
+    type Output = ();
+    fn run<S: shape::Kind>(self) {
+        let Self { line, run, first_id, found } = self;
+        let ray = if S::SHEARED { &line.sheared } else { &line.plain };
+        for (place, &id) in run.ids().iter().enumerate() {
+            let shape = One { numbers: run.numbers, stride: run.count, place };
+            S::crossings(ray, shape, |t| {
+                if t >= line.range[0] && t <= line.range[1] {
+                    found.push((t, first_id + id as u32));
+                }
+            });
         }
     }
 }

@@ -101,6 +101,7 @@ impl<const ANY: bool> Kernel for VisitEach<'_, ANY> {
 mod tests {
     use super::super::{PACKET, Quality, Shapes};
     use super::*;
+    use crate::geometry::shape::Triangles;
     use crate::lanes::ArrayLanes;
     use proptest::prelude::*;
 
@@ -159,7 +160,7 @@ mod tests {
             prop_assume!(dir.is_finite());
             let seen = everything.corners().map(|c| to_model.apply(c));
             let reach = Bounds::of(vertices).union(Bounds::of(seen)).diagonal();
-            let shapes = Shapes { vertices: &vertices, faces: &[[0, 1, 2]], ..Shapes::default() };
+            let shapes = Shapes { triangles: Triangles { vertices: &vertices, faces: &[[0, 1, 2]] }, ..Shapes::default() };
             let model = Bvh::build(&shapes, vec![], MARGIN * reach, Quality::Good, 1);
             let shapes = Shapes { instances: &instances, ..Shapes::default() };
             let tree = Bvh::build(&shapes, vec![model], MARGIN * everything.diagonal(), Quality::Good, 1);
@@ -221,10 +222,11 @@ mod tests {
                 })
                 .collect();
             let model = |faces| {
-                let shapes = Shapes { vertices: &vertices, faces, ..Shapes::default() };
+                let shapes = Shapes { triangles: Triangles { vertices: &vertices, faces }, ..Shapes::default() };
                 Bvh::build(&shapes, vec![], MARGIN * 4.0 * reach, Quality::Good, 1)
             };
-            let shapes = Shapes { spheres: &spheres, vertices: &vertices, faces: own, instances: &instances };
+            let triangles = Triangles { vertices: &vertices, faces: own };
+            let shapes = Shapes { spheres: &spheres, triangles, instances: &instances };
             let tree = Bvh::build(&shapes, vec![model(few), model(all)], MARGIN * reach, Quality::Good, 1);
             let flat = tree.clone().flat();
             let limits = [(0.0, f64::INFINITY), (1.0, 4.0), (2.0, 2.0), (0.0, f64::NAN), (1e-5, 8.0)];

@@ -1,4 +1,4 @@
-//! The tree of boxes: eight to a node, up to eight primitives to a leaf.
+//! The tree of boxes: eight to a node, up to eight primitives to a leaf, of whatever shape.
 //!
 //! The answer does not depend on the tree. Every box holds its primitives with a margin that is larger than the
 //! rounding errors of the primitive tests (see `MARGIN`), and at equal distance the lower primitive id is hit,
@@ -7,25 +7,27 @@
 
 mod build;
 mod crossings;
+mod few_spheres;
 mod instance;
 mod nearest;
 mod node;
 mod packet;
+mod packet_traversal;
 mod primitives;
-mod single;
-mod together;
+mod single_ray;
 
+pub use super::shape::Shapes;
 pub use build::Quality;
+pub(crate) use few_spheres::FewSpheres;
 pub use instance::Instance;
-pub(crate) use nearest::{Few, Nearest};
+pub(crate) use nearest::Nearest;
 pub(crate) use packet::{Packet, SIZE as PACKET};
-pub use primitives::Shapes;
 
-use super::Vec3;
 use super::bounds::OuterBox;
+use super::shape::{AnyShape, Kind};
 use crate::lanes::prefetch;
 use crate::threads;
-use node::{Child, Kind, Node};
+use node::{Child, Node};
 use primitives::Primitives;
 
 /// Relative size of the margin around each primitive: 2⁻⁴⁸ of the farthest distance from which a ray can come, and of the
@@ -46,7 +48,7 @@ const FETCHED: usize = 8;
 /// Fewer primitives are done before threads have started.
 const WORTH_THREADS: usize = 1 << 12;
 
-/// A tree of boxes over spheres and triangles, with its own copy of them.
+/// A tree of boxes over shapes, with its own copy of them.
 #[derive(Clone, Debug, Default)]
 pub struct Bvh {
     nodes: Vec<Node>,
@@ -56,7 +58,7 @@ pub struct Bvh {
     models: Vec<Bvh>,
     instances: Vec<Instance>,
     /// The spheres once more, if they are few and all there is.
-    few: Few,
+    few_spheres: FewSpheres,
 }
 
 /// What a tree is made of, with those of its models.
@@ -80,7 +82,8 @@ impl Bvh {
     /// `models`: the trees that stand at the instances; they have none of their own. `threads`: 0 for as many as the
     /// machine has cores.
     pub fn build(shapes: &Shapes<'_>, models: Vec<Self>, margin: f64, quality: Quality, threads: usize) -> Self {
-        let padded = |i| OuterBox::around(&shapes.bounds(i), margin);
+        let firsts = shapes.firsts();
+        let padded = |i| OuterBox::around(&shapes.bounds_from(&firsts, i), margin);
         let threads = if shapes.count() < WORTH_THREADS { 1 } else { threads.min(shapes.count() / WORTH_THREADS + 1) };
         let (tree, primitives) = threads::share(threads, |parallel| {
             let mut tree = build::build(shapes.count(), padded, quality, parallel);
@@ -93,7 +96,7 @@ impl Bvh {
             depth: tree.depth,
             models,
             instances: shapes.instances.to_vec(),
-            few: nearest::few(shapes),
+            few_spheres: few_spheres::few_spheres(shapes),
         }
     }
 
@@ -105,9 +108,9 @@ impl Bvh {
         prefetch::<FETCHED>(if child.is_node() { node } else { leaf });
     }
 
-    /// Are there any triangles? Otherwise rays need no shears.
-    pub(crate) fn has_triangles(&self) -> bool {
-        self.primitives.has_triangles()
+    /// Is there anything whose test wants the shears of rays?
+    pub(crate) fn needs_shears(&self) -> bool {
+        self.primitives.has_sheared()
     }
 
     /// A model, by its number.
@@ -115,14 +118,20 @@ impl Bvh {
         &self.models[number]
     }
 
-    /// The corners of a triangle, by its id.
-    pub fn corners(&self, id: usize) -> [Vec3; 3] {
-        self.primitives.corners(id)
+    /// A primitive, by its id; `None` for those of instances.
+    pub(crate) fn shape(&self, id: usize) -> Option<AnyShape> {
+        self.primitives.shape(id)
+    }
+
+    /// A primitive that may be of this kind, by its id.
+    #[inline(always)]
+    pub(crate) fn get<S: Kind>(&self, id: usize) -> Option<S> {
+        self.primitives.get(id)
     }
 
     /// Nodes, leaves, depth, bytes.
     pub fn statistics(&self) -> TreeStatistics {
-        let is_leaf = |child: &&Child| matches!(child.kind(), Kind::Block(_));
+        let is_leaf = |child: &&Child| matches!(child.kind(), node::Kind::Block(_));
         let own = TreeStatistics {
             nodes: self.nodes.len(),
             leaves: self.nodes.iter().flat_map(|node| &node.child).filter(is_leaf).count(),
@@ -142,7 +151,7 @@ impl Bvh {
     /// The same primitives in boxes that hold everything: every ray meets every primitive. The oracle of the tests.
     #[must_use]
     pub fn flat(mut self) -> Self {
-        self.few.clear();
+        self.few_spheres.clear();
         let everything = OuterBox { min: [f32::NEG_INFINITY; 3], max: [f32::INFINITY; 3] };
         for node in &mut self.nodes {
             for place in 0..node.used().count_ones() as usize {
@@ -158,7 +167,8 @@ impl Bvh {
 mod tests {
     use super::*;
     use crate::geometry::ray::{Heading, axes, main_axis};
-    use crate::geometry::{Bounds, Sphere, sphere, triangle};
+    use crate::geometry::shape::Triangles;
+    use crate::geometry::{Bounds, Sphere, Vec3, sphere, triangle};
     use crate::lanes::{ArrayLanes, Lanes};
     use proptest::prelude::*;
 
@@ -179,7 +189,8 @@ mod tests {
             sphere::intersect(origin, dir, s.center, s.radius)
         } else {
             let k = axes(main_axis(dir));
-            let corners = shapes.faces[id - shapes.spheres.len()].map(|v| shapes.vertices[v as usize].permuted(k));
+            let Triangles { vertices, faces } = shapes.triangles;
+            let corners = faces[id - shapes.spheres.len()].map(|v| vertices[v as usize].permuted(k));
             let hit = triangle::intersect(origin.permuted(k), &Heading::new(dir.permuted(k)), corners);
             (hit.t, hit.meets)
         };
@@ -273,7 +284,7 @@ mod tests {
             let target = (corners[0] * weights[0] + corners[1] * weights[1] + corners[2] * weights[2]) * (1.0 / sum);
             let dir = (target - origin).unit();
             prop_assume!(dir.is_finite());
-            finds_the_same(&Shapes { vertices: &corners, faces: &[[0, 1, 2]], ..Shapes::default() }, origin, dir);
+            finds_the_same(&Shapes { triangles: Triangles { vertices: &corners, faces: &[[0, 1, 2]] }, ..Shapes::default() }, origin, dir);
         }
 
         /// In the plane of a triangle the edge functions are noise.
@@ -287,7 +298,7 @@ mod tests {
             let origin = a + (b - a) * from_b + (c - a) * from_c;
             let dir = ((b - a) * to_b + (c - a) * to_c).unit();
             prop_assume!(dir.is_finite() && triangle::normal([a, b, c]).is_finite());
-            finds_the_same(&Shapes { vertices: &[a, b, c], faces: &[[0, 1, 2]], ..Shapes::default() }, origin, dir);
+            finds_the_same(&Shapes { triangles: Triangles { vertices: &[a, b, c], faces: &[[0, 1, 2]] }, ..Shapes::default() }, origin, dir);
         }
 
         /// Enough primitives for several levels, and many rays at the same distance from two of them.
@@ -303,7 +314,8 @@ mod tests {
                 centers.iter().map(|&c| Sphere { center: whole(c) * 2.0, radius: 1.0 }).collect();
             let vertices: Vec<Vec3> = corners.iter().map(|&c| whole(c)).collect();
             let faces: Vec<[u32; 3]> = (0..vertices.len() as u32 / 3).map(|f| [3 * f, 3 * f + 1, 3 * f + 2]).collect();
-            let shapes = Shapes { spheres: &spheres, vertices: &vertices, faces: &faces, instances: &[] };
+            let triangles = Triangles { vertices: &vertices, faces: &faces };
+            let shapes = Shapes { spheres: &spheres, triangles, ..Shapes::default() };
             let origin = whole(origin) + Vec3::new(0.3, 0.3, 0.3);
             finds_the_same(&shapes, origin, dir.unit());
             // Along an axis: into the planes of boxes, and at several spheres at once.

@@ -1,12 +1,9 @@
-//! The nearest hits of rays in lanes, and a handful of spheres that need no tree.
+//! The nearest hits of rays in lanes.
 
 use super::packet::Packet;
-use super::{Bvh, Shapes};
-use crate::geometry::{Sphere, Vec3, sphere};
+use crate::geometry::ray::Ray;
+use crate::geometry::shape::{Numbers, Query, Shape};
 use crate::lanes::{Lanes, Mask};
-
-/// So few spheres cost less than boxes around them.
-const FEW: usize = 8;
 
 /// The nearest hits of some rays while primitives are tested one after the other.
 #[derive(Clone, Copy, Debug)]
@@ -44,13 +41,13 @@ impl<L: Lanes> Nearest<L> {
 
     /// Which rays leave this primitive?
     #[inline(always)]
-    pub(super) fn leave(&self, id: f64) -> L::Mask {
+    fn leave(&self, id: f64) -> L::Mask {
         self.source.eq(L::splat(id))
     }
 
     /// Keeps a hit where it is nearer; at equal distance that of the lower id. The primitive that a ray leaves is not hit.
     #[inline(always)]
-    pub(super) fn keep(&mut self, t: L, meets: L::Mask, id: f64) {
+    fn keep(&mut self, t: L, meets: L::Mask, id: f64) {
         let meets = meets & self.active;
         if meets.any() {
             self.keep_crossing(t, meets & !self.leave(id), id);
@@ -59,7 +56,7 @@ impl<L: Lanes> Nearest<L> {
 
     /// The same, of a primitive that may be crossed by a ray that leaves it.
     #[inline(always)]
-    pub(super) fn keep_crossing(&mut self, t: L, meets: L::Mask, id: f64) {
+    fn keep_crossing(&mut self, t: L, meets: L::Mask, id: f64) {
         let meets = meets & self.active;
         let id = L::splat(id);
         let closer = t.lt(self.t) | (t.eq(self.t) & id.lt(self.primitive));
@@ -69,52 +66,17 @@ impl<L: Lanes> Nearest<L> {
         self.primitive = L::select(kept, id, self.primitive);
     }
 
-    /// Tests a sphere: entered from outside only, or with `two_sided` crossed from either side.
+    /// Tests a shape that is the same in all lanes.
     #[inline(always)]
-    pub(super) fn sphere(
-        &mut self,
-        two_sided: bool,
-        origin: Vec3<L>,
-        dir: Vec3<L>,
-        center: Vec3<L>,
-        radius: L,
-        id: f64,
-    ) {
-        if two_sided {
-            let (t, meets) = sphere::crossing(origin, dir, center, radius, self.t_min, self.leave(id));
+    pub(super) fn offer<S: Shape>(&mut self, two_sided: bool, ray: &Ray<L>, shape: impl Numbers<L>, id: f64) {
+        if S::may_return(two_sided) {
+            let query = Query { two_sided, t_min: self.t_min, leaves: self.leave(id) };
+            let (t, meets) = S::intersect(ray, shape, &query);
             self.keep_crossing(t, meets, id);
         } else {
-            let (t, meets) = sphere::intersect(origin, dir, center, radius);
+            let query = Query { two_sided, t_min: self.t_min, leaves: L::Mask::from_bits(0) };
+            let (t, meets) = S::intersect(ray, shape, &query);
             self.keep(t, meets, id);
         }
-    }
-}
-
-/// Some spheres and their ids, in ascending order.
-pub(crate) type Few = Vec<(f64, Sphere)>;
-
-/// The spheres, if there are only a few of them and nothing else.
-pub(super) fn few(shapes: &Shapes<'_>) -> Few {
-    let all = shapes.count() == shapes.spheres.len() && shapes.count() <= FEW;
-    let spheres = if all { shapes.spheres } else { &[] };
-    spheres.iter().enumerate().map(|(id, &sphere)| (id as f64, sphere)).collect()
-}
-
-impl Bvh {
-    /// All there is, if it is a few spheres: then [`Nearest::among`] finds the same hits as the tree, without packets.
-    #[inline(always)]
-    pub(crate) fn few(&self) -> Option<&Few> {
-        (!self.few.is_empty()).then_some(&self.few)
-    }
-}
-
-impl<L: Lanes> Nearest<L> {
-    /// The nearest hits of some rays among these spheres, entered from outside only or crossed from either side.
-    #[inline(always)]
-    pub fn among(mut self, two_sided: bool, spheres: &[(f64, Sphere)], origin: Vec3<L>, dir: Vec3<L>) -> Self {
-        for (id, sphere) in spheres {
-            self.sphere(two_sided, origin, dir, sphere.center.splat(), L::splat(sphere.radius), *id);
-        }
-        self
     }
 }

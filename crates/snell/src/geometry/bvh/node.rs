@@ -28,18 +28,52 @@ pub(crate) enum Kind {
     Nothing,
 }
 
-/// Where the numbers of a leaf start, and how many primitives of which kind they are.
+/// Where the numbers of a leaf start, and what is there first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Block {
     pub at: usize,
-    pub spheres: usize,
-    pub triangles: usize,
-    pub instances: usize,
+    pub run: Run,
 }
 
-/// The two highest bits say what it is; a block has four bits for each count and 46 for its place.
+/// Some primitives of one kind in a leaf.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Run {
+    pub kind: usize,
+    pub count: usize,
+    /// Does another run follow?
+    pub more: bool,
+}
+
+/// The two highest bits say what it is; a block has 46 for its place, then those of its first run.
 const TAG: u32 = 62;
 const PLACE: u32 = 46;
+
+/// Four bits for the count, one for whether there is more, the rest for the kind.
+const COUNT: u32 = 4;
+
+impl Run {
+    fn bits(self) -> u64 {
+        let Self { kind, count, more } = self;
+        count as u64 | u64::from(more) << COUNT | (kind as u64) << (COUNT + 1)
+    }
+
+    #[inline(always)]
+    fn of_bits(bits: u64) -> Self {
+        let (kind, count) = ((bits >> (COUNT + 1)) as usize, (bits & ((1 << COUNT) - 1)) as usize);
+        Self { kind, count, more: bits >> COUNT & 1 == 1 }
+    }
+
+    /// As it stands in a leaf in front of the run.
+    pub fn number(self) -> f64 {
+        self.bits() as f64
+    }
+
+    /// The inverse of [`Run::number`].
+    #[inline(always)]
+    pub fn of_number(number: f64) -> Self {
+        Self::of_bits(number as u64)
+    }
+}
 
 impl Child {
     pub const NOTHING: Self = Self(3 << TAG);
@@ -53,10 +87,9 @@ impl Child {
         Self(index as u64 | 1 << TAG)
     }
 
-    /// `at` is below 2⁴⁶, the counts are at most 8.
-    pub fn block(Block { at, spheres, triangles, instances }: Block) -> Self {
-        let counts = spheres | triangles << 4 | instances << 8;
-        Self(at as u64 | (counts as u64) << PLACE | 2 << TAG)
+    /// `at` is below 2⁴⁶, the count is at most 8.
+    pub fn block(Block { at, run }: Block) -> Self {
+        Self(at as u64 | run.bits() << PLACE | 2 << TAG)
     }
 
     /// Is it another node?
@@ -75,12 +108,8 @@ impl Child {
     #[inline(always)]
     pub fn place(self) -> Block {
         let Self(bits) = self;
-        Block {
-            at: (bits & ((1 << PLACE) - 1)) as usize,
-            spheres: (bits >> PLACE & 15) as usize,
-            triangles: (bits >> (PLACE + 4) & 15) as usize,
-            instances: (bits >> (PLACE + 8) & 15) as usize,
-        }
+        let run = Run::of_bits(bits >> PLACE & ((1 << (TAG - PLACE)) - 1));
+        Block { at: (bits & ((1 << PLACE) - 1)) as usize, run }
     }
 
     #[inline(always)]

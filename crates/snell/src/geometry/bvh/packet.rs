@@ -1,9 +1,10 @@
 //! Up to 64 rays in columns, as they go through the tree.
 
-use super::single::Walkers;
-use super::together::BeamWaiting;
+use super::packet_traversal::BeamWaiting;
+use super::single_ray::Walkers;
 use crate::geometry::Vec3;
-use crate::geometry::ray::{axes, inverse};
+use crate::geometry::ray::{Heading, Ray, axes, inverse};
+use crate::geometry::shape::Shape;
 use crate::lanes::{Lanes, Mask};
 use std::marker::PhantomData;
 
@@ -91,7 +92,7 @@ impl<L: Lanes> Iterator for Groups<L> {
 }
 
 impl Packet {
-    /// Sets the rays of one group of lanes, with their shears if they are wanted, which only triangles need.
+    /// Sets the rays of one group of lanes, with their shears if they are wanted, which not all shapes need.
     #[inline(always)]
     #[allow(clippy::too_many_arguments, reason = "a ray in lanes is many numbers, and nobody else wants them together")]
     pub fn set<L: Lanes>(
@@ -160,6 +161,38 @@ impl Packet {
         Vec3::new(L::load(&columns[x][start..]), L::load(&columns[y][start..]), L::load(&columns[z][start..]))
     }
 
+    /// The rays of one group of lanes, as a shape wants them.
+    #[inline(always)]
+    pub(super) fn rays<S: Shape, L: Lanes>(&self, start: usize, octant: &Octant) -> Ray<L> {
+        if !S::SHEARED {
+            let (origin, dir) = self.ways(start);
+            return Ray::unsheared(origin, dir);
+        }
+        let axes = octant.axes;
+        let heading = Heading {
+            dir: Self::vector(&self.dir, start, axes),
+            inverse: Self::vector(&self.inv_dir, start, axes),
+            shear: [L::load(&self.shear[0][start..]), L::load(&self.shear[1][start..])],
+        };
+        Ray { origin: Self::vector(&self.origin, start, axes), heading, axes }
+    }
+
+    /// One ray in every lane, as a shape wants it.
+    #[inline(always)]
+    pub(super) fn ray<S: Shape, L: Lanes>(&self, ray: usize, octant: &Octant) -> Ray<L> {
+        if !S::SHEARED {
+            let (origin, dir) = (Self::one(&self.origin, ray, [0, 1, 2]), Self::one(&self.dir, ray, [0, 1, 2]));
+            return Ray::unsheared(origin, dir);
+        }
+        let axes = octant.axes;
+        let heading = Heading {
+            dir: Self::one(&self.dir, ray, axes),
+            inverse: Self::one(&self.inv_dir, ray, axes),
+            shear: [L::splat(self.shear[0][ray]), L::splat(self.shear[1][ray])],
+        };
+        Ray { origin: Self::one(&self.origin, ray, axes), heading, axes }
+    }
+
     /// Where a ray goes.
     #[inline(always)]
     pub(super) fn octant(&self, ray: usize) -> Octant {
@@ -171,7 +204,7 @@ impl Packet {
 
     /// A vector of one ray in every lane.
     #[inline(always)]
-    pub(super) fn one<L: Lanes>(columns: &[Column; 3], ray: usize, [x, y, z]: [usize; 3]) -> Vec3<L> {
+    fn one<L: Lanes>(columns: &[Column; 3], ray: usize, [x, y, z]: [usize; 3]) -> Vec3<L> {
         Vec3::new(L::splat(columns[x][ray]), L::splat(columns[y][ray]), L::splat(columns[z][ray]))
     }
 

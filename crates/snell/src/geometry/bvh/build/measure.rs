@@ -3,6 +3,7 @@
 
 use super::*;
 use crate::geometry::bvh::node::{Kind, WIDTH};
+use crate::geometry::shape::Surface;
 use crate::geometry::{Bounds, Sphere, Vec3};
 
 /// The knot of `n` rings of `m` quads, on a floor of two triangles: 2nm + 2 boxes.

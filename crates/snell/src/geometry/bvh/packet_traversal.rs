@@ -10,10 +10,10 @@ use super::Bvh;
 use super::nearest::Nearest;
 use super::node::{self, Block, Child, Kind, Node, plane};
 use super::packet::{Octant, Packet, SIZE, groups};
-use super::primitives::{SPHERE, TRIANGLE};
-use crate::geometry::ray::Heading;
-use crate::geometry::{Vec3, triangle};
+use super::primitives::{INSTANCES, RunOf};
+use crate::geometry::shape::{self, ForKind, One, of_kind};
 use crate::lanes::{Kernel, Lanes, Mask};
+use std::marker::PhantomData;
 
 /// So few rays of a packet are not worth a beam: they go alone from the root.
 const ALIKE: u32 = 16;
@@ -151,7 +151,7 @@ impl Bvh {
             let mut found = 0;
             match child.kind() {
                 Kind::Nothing | Kind::Leaf(_) => {}
-                Kind::Block(block) if alone::<L>(block, rays) => {
+                Kind::Block(block) if self.alone::<L>(block, rays) => {
                     found = self.test_each::<L, ANY>(packet, rays, octant, block);
                 }
                 Kind::Block(block) => found = self.test_together::<L, ANY>(packet, rays, octant, block),
@@ -229,62 +229,64 @@ impl Bvh {
         octant: &Octant,
         block: Block,
     ) -> u64 {
-        let Block { at, spheres, triangles, instances } = block;
-        let numbers = &self.primitives.numbers[at..];
-        let k = octant.axes;
+        let (mut hit, mut run) = (0, self.primitives.first(block));
+        loop {
+            if run.kind == INSTANCES {
+                let open = if ANY { rays & !hit } else { rays };
+                hit |= self.visit_each::<L, ANY>(packet, open, run.ids());
+            } else {
+                hit |= of_kind(run.kind, TestRun::<L> { packet, rays, octant, run, lanes: PhantomData });
+            }
+            let Some(next) = run.next() else { return hit };
+            run = next;
+        }
+    }
+
+    /// Is it cheaper to test the primitives of a leaf against one ray after the other than against the rays in lanes?
+    #[inline(always)]
+    fn alone<L: Lanes>(&self, block: Block, rays: u64) -> bool {
+        let (mut one_by_one, mut together, mut run) = (0, 0, self.primitives.first(block));
+        loop {
+            if run.kind == INSTANCES {
+                return false;
+            }
+            one_by_one += run.count.div_ceil(L::WIDTH);
+            together += run.count;
+            let Some(next) = run.next() else { break };
+            run = next;
+        }
+        rays.count_ones() as usize * one_by_one <= groups::<L>(rays).count() * together
+    }
+}
+
+/// Tests the primitives of a run, one after the other, against the rays in lanes.
+struct TestRun<'a, L> {
+    packet: &'a mut Packet,
+    rays: u64,
+    octant: &'a Octant,
+    run: RunOf<'a>,
+    lanes: PhantomData<L>,
+}
+
+impl<L: Lanes> ForKind for TestRun<'_, L> {
+    type Output = u64;
+    #[inline(always)]
+    fn run<S: shape::Kind>(self) -> u64 {
+        let Self { packet, rays, octant, run: RunOf { count, numbers, .. }, .. } = self;
         let mut hit = 0;
         for (start, active) in groups::<L>(rays) {
             let mut nearest = Nearest::<L>::load(packet, start, active);
-            if spheres > 0 {
-                let origin = Packet::vector(&packet.origin, start, [0, 1, 2]);
-                let dir = Packet::vector(&packet.dir, start, [0, 1, 2]);
-                for i in 0..spheres {
-                    let center = vector(numbers, spheres, i, [0, 1, 2]);
-                    let radius = L::splat(numbers[3 * spheres + i]);
-                    nearest.sphere(packet.two_sided, origin, dir, center, radius, numbers[4 * spheres + i]);
-                }
-            }
-            if triangles > 0 {
-                let origin = Packet::vector(&packet.origin, start, k);
-                let heading = Heading {
-                    dir: Packet::vector(&packet.dir, start, k),
-                    inverse: Packet::vector(&packet.inv_dir, start, k),
-                    shear: [L::load(&packet.shear[0][start..]), L::load(&packet.shear[1][start..])],
-                };
-                let numbers = &numbers[SPHERE * spheres..];
-                for i in 0..triangles {
-                    let a = vector(numbers, triangles, i, k);
-                    let b = vector(numbers, triangles, i, [k[0] + 3, k[1] + 3, k[2] + 3]);
-                    let c = vector(numbers, triangles, i, [k[0] + 6, k[1] + 6, k[2] + 6]);
-                    let found = triangle::intersect(origin, &heading, [a, b, c]);
-                    nearest.keep(found.t, found.meets, numbers[(TRIANGLE - 1) * triangles + i]);
-                }
+            let ray = packet.rays::<S, L>(start, octant);
+            for place in 0..count {
+                let id = numbers[S::NUMBERS * count + place];
+                nearest.offer::<S>(packet.two_sided, &ray, One { numbers, stride: count, place }, id);
             }
             hit |= u64::from(nearest.hit.bits()) << start;
             nearest.t.store(&mut packet.t[start..]);
             nearest.primitive.store(&mut packet.primitive[start..]);
         }
-        if instances > 0 {
-            let open = if ANY { rays & !hit } else { rays };
-            let numbers = &numbers[SPHERE * spheres + TRIANGLE * triangles..][..instances];
-            hit |= self.visit_each::<L, ANY>(packet, open, numbers);
-        }
         hit
     }
-}
-
-/// Is it cheaper to test the primitives of a leaf against one ray after the other than against the rays in lanes?
-#[inline(always)]
-fn alone<L: Lanes>(block: Block, rays: u64) -> bool {
-    let each = rays.count_ones() as usize * (block.spheres.div_ceil(L::WIDTH) + block.triangles.div_ceil(L::WIDTH));
-    block.instances == 0 && each <= groups::<L>(rays).count() * (block.spheres + block.triangles)
-}
-
-/// Three numbers of one primitive, from these columns of a leaf, in every lane.
-#[inline(always)]
-fn vector<L: Lanes>(numbers: &[f64], stride: usize, i: usize, columns: [usize; 3]) -> Vec3<L> {
-    let [x, y, z] = columns;
-    Vec3::new(numbers[x * stride + i], numbers[y * stride + i], numbers[z * stride + i]).splat()
 }
 
 /// Which of these rays meet one box of a node.

@@ -11,16 +11,115 @@
 //!    around the three points, which is decided without rounding, and with that is no farther outside than a rounding of the
 //!    triangle's own size.
 //! 2. *Where is its plane?* `t = n·(a − o)/(n·d)` with the area vector of the corners themselves, which is good for slivers too
-//!    ([`area`](super::area)). The weights of the edge functions would do for round triangles only: they err by `2⁻⁵³` times the
+//!    ([`area`](crate::geometry::area)). The weights of the edge functions would do for round triangles only: they err by `2⁻⁵³` times the
 //!    aspect.
 //! 3. *Where along it is the triangle?* Grazing rays meet a plane anywhere. The hit is moved into the triangle's own box, with
 //!    `SLACK` for what was rounded in 1, which a ray that goes through the triangle surely meets. So no tree of boxes can
 //!    hide a hit, and none is refused.
 
-use super::Vec3;
-use super::area::area_vector;
-use super::ray::Heading;
+use super::{Numbers, Query, Shape, ShapeList, Surface};
+use crate::geometry::area::area_vector;
+use crate::geometry::ray::{Heading, Ray, axes, main_axis};
+use crate::geometry::{Bounds, Vec3};
 use crate::lanes::{Lanes, Mask};
+
+/// A triangle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Triangle {
+    /// Counter-clockwise seen from where its normal points.
+    pub corners: [Vec3; 3],
+}
+
+/// Triangles that share vertices.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Triangles<'a> {
+    /// The corners.
+    pub vertices: &'a [Vec3],
+    /// Three vertices per triangle.
+    pub faces: &'a [[u32; 3]],
+}
+
+impl ShapeList<Triangle> for Triangles<'_> {
+    fn len(self) -> usize {
+        self.faces.len()
+    }
+
+    fn get(self, place: usize) -> Triangle {
+        Triangle { corners: self.faces[place].map(|v| self.vertices[v as usize]) }
+    }
+}
+
+impl Shape for Triangle {
+    /// Three corners.
+    const NUMBERS: usize = 9;
+    const SHEARED: bool = true;
+
+    fn write(&self, put: impl FnMut(f64)) {
+        self.corners.into_iter().flat_map(<[f64; 3]>::from).for_each(put);
+    }
+
+    fn read(number: impl Fn(usize) -> f64) -> Self {
+        Self { corners: [0, 3, 6].map(|first| Vec3::new(number(first), number(first + 1), number(first + 2))) }
+    }
+
+    #[inline(always)]
+    fn may_return(_two_sided: bool) -> bool {
+        false
+    }
+
+    #[inline(always)]
+    fn intersect<L: Lanes>(ray: &Ray<L>, shape: impl Numbers<L>, _query: &Query<L>) -> (L, L::Mask) {
+        let k = ray.axes;
+        let a = shape.vector(k);
+        let b = shape.vector([k[0] + 3, k[1] + 3, k[2] + 3]);
+        let c = shape.vector([k[0] + 6, k[1] + 6, k[2] + 6]);
+        let hit = intersect(ray.origin, &ray.heading, [a, b, c]);
+        (hit.t, hit.meets)
+    }
+
+    fn crossings(ray: &Ray<f64>, shape: impl Numbers<f64>, mut found: impl FnMut(f64)) {
+        let query = Query { two_sided: true, t_min: f64::NEG_INFINITY, leaves: false };
+        let (t, meets) = Self::intersect(ray, shape, &query);
+        if meets {
+            found(t);
+        }
+    }
+}
+
+impl Surface for Triangle {
+    fn bounds(&self) -> Bounds {
+        Bounds::of(self.corners)
+    }
+
+    fn enters(&self, origin: Vec3, dir: Vec3, _t: f64) -> bool {
+        is_front(origin, dir, self.corners)
+    }
+
+    fn starts_at(&self, _origin: Vec3, _dir: Vec3, _t: f64) -> bool {
+        true
+    }
+
+    fn meets_at(&self, origin: Vec3, dir: Vec3, _t: f64) -> Option<f64> {
+        let k = axes(main_axis(dir));
+        let heading = Heading::new(dir.permuted(k));
+        let hit = intersect::<f64>(origin.permuted(k), &heading, self.corners.map(|v| v.permuted(k)));
+        hit.meets.then_some(hit.t)
+    }
+
+    fn normal(&self, _point: Vec3) -> Vec3 {
+        normal(self.corners)
+    }
+
+    /// The weights of its second and third corner.
+    fn uv(&self, point: Vec3) -> [f64; 2] {
+        let [_, beta, gamma] = barycentric(self.corners, point);
+        [beta, gamma]
+    }
+
+    fn distance(&self, point: Vec3) -> f64 {
+        distance(self.corners, point)
+    }
+}
 
 /// Where a ray meets a triangle.
 #[derive(Clone, Copy, Debug)]
@@ -80,8 +179,8 @@ pub fn is_front(origin: Vec3, dir: Vec3, vertices: [Vec3; 3]) -> bool {
     if along * along > EDGE_ON * EDGE_ON * n.dot(n) * dir.dot(dir) {
         return along < 0.0;
     }
-    let main = super::ray::main_axis(dir);
-    let k = super::ray::axes(main);
+    let main = main_axis(dir);
+    let k = axes(main);
     let heading = Heading::new(dir.permuted(k));
     let area = Edges::new(vertices.map(|v| heading.seen((v - origin).permuted(k)))).area();
     if area == 0.0 {
@@ -96,7 +195,7 @@ pub fn is_front(origin: Vec3, dir: Vec3, vertices: [Vec3; 3]) -> bool {
 pub fn distance(corners: [Vec3; 3], p: Vec3) -> f64 {
     let [a, b, c] = corners;
     let n = normal(corners);
-    let k = super::ray::axes(super::ray::main_axis(n));
+    let k = axes(main_axis(n));
     // Seen along its normal the triangle is as large as it is.
     let above = intersect(p.permuted(k), &Heading::new(n.permuted(k)), corners.map(|v| v.permuted(k)));
     let to_segment = |a: Vec3, b: Vec3| {
@@ -106,6 +205,28 @@ pub fn distance(corners: [Vec3; 3], p: Vec3) -> f64 {
     };
     let rim = to_segment(a, b).min(to_segment(b, c)).min(to_segment(c, a));
     if above.meets { rim.min(above.t.abs()) } else { rim }
+}
+
+/// Weights of the corners of a triangle at a point on it, each from 0 to 1; they add up to 1 but for a rounding.
+///
+/// The areas are those of the shadow on the coordinate plane that the triangle faces most, where it is largest. A point that
+/// lies beside the triangle, as hits do by a rounding, gets the weights of a place in it. A triangle without area gives its
+/// first corner.
+pub fn barycentric(corners: [Vec3; 3], point: Vec3) -> [f64; 3] {
+    let [a, b, c] = corners;
+    // Seen from a corner, so that far from the origin no digits are lost.
+    let (ab, ac, ap) = (b - a, c - a, point - a);
+    let whole = ab.cross(ac);
+    let size = [whole.x.abs(), whole.y.abs(), whole.z.abs()];
+    let axis = (0..3).fold(0, |best, axis| if size[axis] > size[best] { axis } else { best });
+    let share = |part: Vec3, most: f64| {
+        let share = part.component(axis) / whole.component(axis);
+        // NaN becomes 0 too: no area, or numbers that are none.
+        if share > 0.0 { share.min(most) } else { 0.0 }
+    };
+    let beta = share(ap.cross(ac), 1.0);
+    let gamma = share(ab.cross(ap), 1.0 - beta);
+    [1.0 - beta - gamma, beta, gamma]
 }
 
 /// For each corner twice the area that the ray spans with the other two, as they are seen along it.
@@ -167,7 +288,6 @@ pub fn normal<L: Lanes>(corners: [Vec3<L>; 3]) -> Vec3<L> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::ray::{axes, main_axis};
     use proptest::prelude::*;
 
     fn hit(origin: Vec3, dir: Vec3, vertices: [Vec3; 3]) -> Option<(f64, f64, f64)> {

@@ -1,7 +1,10 @@
 //! Ray and sphere.
 
-use super::{Bounds, Vec3};
+use super::{Numbers, Query, Shape, Surface};
+use crate::geometry::ray::Ray;
+use crate::geometry::{Bounds, Vec3};
 use crate::lanes::{Lanes, Mask};
+use std::f64::consts::{PI, TAU};
 
 /// Beyond this ratio of (distance to the centre)² to radius² the textbook discriminant is given up: it has lost
 /// 24 of its 53 bits there.
@@ -21,12 +24,86 @@ pub struct Sphere {
     pub radius: f64,
 }
 
-impl Sphere {
-    /// Its box, with [`MARGIN`].
-    pub fn bounds(&self) -> Bounds {
+impl Shape for Sphere {
+    /// Centre, radius.
+    const NUMBERS: usize = 4;
+    const SHEARED: bool = false;
+
+    fn write(&self, put: impl FnMut(f64)) {
+        let Vec3 { x, y, z } = self.center;
+        [x, y, z, self.radius].into_iter().for_each(put);
+    }
+
+    fn read(number: impl Fn(usize) -> f64) -> Self {
+        Self { center: Vec3::new(number(0), number(1), number(2)), radius: number(3) }
+    }
+
+    #[inline(always)]
+    fn may_return(two_sided: bool) -> bool {
+        two_sided
+    }
+
+    #[inline(always)]
+    fn intersect<L: Lanes>(ray: &Ray<L>, shape: impl Numbers<L>, query: &Query<L>) -> (L, L::Mask) {
+        let (center, radius) = (shape.vector([0, 1, 2]), shape.number(3));
+        if query.two_sided {
+            crossing(ray.origin, ray.heading.dir, center, radius, query.t_min, query.leaves)
+        } else {
+            intersect(ray.origin, ray.heading.dir, center, radius)
+        }
+    }
+
+    fn crossings(ray: &Ray<f64>, shape: impl Numbers<f64>, mut found: impl FnMut(f64)) {
+        let (center, radius) = (shape.vector([0, 1, 2]), shape.number(3));
+        let before = f64::NEG_INFINITY;
+        let (near, meets) = crossing::<f64>(ray.origin, ray.heading.dir, center, radius, before, false);
+        let (far, _) = crossing::<f64>(ray.origin, ray.heading.dir, center, radius, near, false);
+        if meets {
+            found(near);
+            found(far);
+        }
+    }
+}
+
+impl Surface for Sphere {
+    /// With [`MARGIN`].
+    fn bounds(&self) -> Bounds {
         let r = self.radius * (1.0 + MARGIN);
         let r = Vec3::new(r, r, r);
         Bounds { min: self.center - r, max: self.center + r }
+    }
+
+    fn is_round(&self) -> bool {
+        true
+    }
+
+    /// The near root is before the point that is nearest to the centre.
+    fn enters(&self, origin: Vec3, dir: Vec3, t: f64) -> bool {
+        t < (self.center - origin).dot(dir)
+    }
+
+    fn starts_at(&self, origin: Vec3, dir: Vec3, t: f64) -> bool {
+        let v = (self.center - origin).dot(dir);
+        !(v > 0.0 && t > v)
+    }
+
+    fn meets_at(&self, origin: Vec3, dir: Vec3, t: f64) -> Option<f64> {
+        let middle = (self.center - origin).dot(dir);
+        let before = if t < middle { f64::NEG_INFINITY } else { middle };
+        let (t, meets) = crossing(origin, dir, self.center, self.radius, before, false);
+        meets.then_some(t)
+    }
+
+    fn normal(&self, point: Vec3) -> Vec3 {
+        (point - self.center).unit()
+    }
+
+    fn uv(&self, point: Vec3) -> [f64; 2] {
+        uv(point - self.center)
+    }
+
+    fn distance(&self, point: Vec3) -> f64 {
+        ((point - self.center).length() - self.radius).abs()
     }
 }
 
@@ -78,6 +155,35 @@ pub fn crossing<L: Lanes>(
     let from_within = leaves | near.le(t_min);
     let t = L::select(from_within, far, near);
     (t, disc.gt(zero) & t.gt(t_min) & (!leaves | v.gt(zero)))
+}
+
+/// Where on a map of the world the point of a sphere lies that is in this direction from its centre; `y` points north.
+///
+/// `u` is the longitude as a part of a turn, 0 ≤ `u` < 1, eastward: seen from outside with north up, it grows to the right, so
+/// that the map is not mirrored. The map's centre (`u` = ½) looks to +z, its seam (`u` = 0) to −z; +x is at `u` = ¾. `v` is
+/// the latitude, from the south pole (0) over the equator (½) to the north pole (1).
+///
+/// The direction may have any length. At the poles `u` is ½; the zero vector is at (½, ½). The error is a few units in the
+/// last place of 1, at the poles too.
+pub fn uv(direction: Vec3) -> [f64; 2] {
+    let Vec3 { x, y, z } = direction;
+    if x == 0.0 && z == 0.0 {
+        return [
+            0.5,
+            if y > 0.0 {
+                1.0
+            } else if y < 0.0 {
+                0.0
+            } else {
+                0.5
+            },
+        ];
+    }
+    let turn = 0.5 + libm::atan2(x, z) / TAU;
+    // Halved where a sum of squares could be too large. An arc tangent keeps the digits that an arc sine loses near the poles.
+    let scale = if x.abs().max(z.abs()) > 1.0 { 0.5 } else { 1.0 };
+    let from_south = libm::atan2(libm::hypot(scale * x, scale * z), -scale * y);
+    [if turn >= 1.0 { 0.0 } else { turn }, from_south / PI]
 }
 
 #[cfg(test)]

@@ -4,10 +4,10 @@ use super::Bvh;
 use super::build::MOST_WAITING;
 use super::node::{Block, Child, Node, WIDTH, plane};
 use super::packet::{Octant, Packet};
-use super::primitives::{SPHERE, TRIANGLE};
-use crate::geometry::ray::Heading;
-use crate::geometry::{Vec3, sphere, triangle};
+use super::primitives::{INSTANCES, RunOf};
+use crate::geometry::shape::{ForKind, Kind, Neighbours, Query, of_kind};
 use crate::lanes::{Lanes, Mask};
+use std::marker::PhantomData;
 
 /// So many rays are on their way at the same time.
 const WALKERS: usize = 8;
@@ -113,48 +113,46 @@ impl Bvh {
         octant: &Octant,
         block: Block,
     ) -> bool {
-        let Block { at, spheres, triangles, instances } = block;
+        let (mut found, mut run) = (false, self.primitives.first(block));
+        loop {
+            if run.kind != INSTANCES {
+                found |= of_kind(run.kind, TestRun::<L> { packet, ray, octant, run, lanes: PhantomData });
+            } else if !(ANY && found) {
+                found |= self.visit_each::<L, ANY>(packet, 1 << ray, run.ids()) != 0;
+            }
+            let Some(next) = run.next() else { return found };
+            run = next;
+        }
+    }
+}
+
+/// Tests one ray against the primitives of a run in lanes.
+struct TestRun<'a, L> {
+    packet: &'a mut Packet,
+    ray: usize,
+    octant: &'a Octant,
+    run: RunOf<'a>,
+    lanes: PhantomData<L>,
+}
+
+impl<L: Lanes> ForKind for TestRun<'_, L> {
+    type Output = bool;
+    #[inline(always)]
+    fn run<S: Kind>(self) -> bool {
+        let Self { packet, ray: number, octant, run: RunOf { count, numbers, .. }, .. } = self;
+        let ray = packet.ray::<S, L>(number, octant);
+        let two_sided = packet.two_sided;
         let mut found = false;
-        let numbers = &self.primitives.numbers[at..];
-        if spheres > 0 {
-            let (origin, dir) = (Packet::one(&packet.origin, ray, [0, 1, 2]), Packet::one(&packet.dir, ray, [0, 1, 2]));
-            for start in (0..spheres).step_by(L::WIDTH) {
-                let center = vectors(&numbers[start..], spheres, [0, 1, 2]);
-                let radius = L::load(&numbers[3 * spheres + start..]);
-                let ids = &numbers[4 * spheres + start..];
-                let leaves = L::load(ids).eq(L::splat(packet.source[ray]));
-                let (t, meets) = if packet.two_sided {
-                    sphere::crossing(origin, dir, center, radius, L::splat(packet.t_min[ray]), leaves)
-                } else {
-                    let (t, meets) = sphere::intersect(origin, dir, center, radius);
-                    (t, meets & !leaves)
-                };
-                found |= keep::<L>(packet, ray, t, meets & L::Mask::first(spheres - start), ids);
+        for start in (0..count).step_by(L::WIDTH) {
+            let ids = &numbers[S::NUMBERS * count + start..];
+            let leaves = L::load(ids).eq(L::splat(packet.source[number]));
+            let query = Query { two_sided, t_min: L::splat(packet.t_min[number]), leaves };
+            let shapes = Neighbours { numbers: &numbers[start..], stride: count };
+            let (t, mut meets) = S::intersect(&ray, shapes, &query);
+            if !S::may_return(two_sided) {
+                meets = meets & !leaves;
             }
-        }
-        if triangles > 0 {
-            let k = octant.axes;
-            let origin = Packet::one(&packet.origin, ray, k);
-            let heading = Heading {
-                dir: Packet::one(&packet.dir, ray, k),
-                inverse: Packet::one(&packet.inv_dir, ray, k),
-                shear: [L::splat(packet.shear[0][ray]), L::splat(packet.shear[1][ray])],
-            };
-            let numbers = &numbers[SPHERE * spheres..];
-            for start in (0..triangles).step_by(L::WIDTH) {
-                let a = vectors(&numbers[start..], triangles, k);
-                let b = vectors(&numbers[start..], triangles, [k[0] + 3, k[1] + 3, k[2] + 3]);
-                let c = vectors(&numbers[start..], triangles, [k[0] + 6, k[1] + 6, k[2] + 6]);
-                let hit = triangle::intersect(origin, &heading, [a, b, c]);
-                let ids = &numbers[(TRIANGLE - 1) * triangles + start..];
-                let leaves = L::load(ids).eq(L::splat(packet.source[ray]));
-                let meets = hit.meets & !leaves & L::Mask::first(triangles - start);
-                found |= keep::<L>(packet, ray, hit.t, meets, ids);
-            }
-        }
-        if instances > 0 && !(ANY && found) {
-            let numbers = &numbers[SPHERE * spheres + TRIANGLE * triangles..][..instances];
-            found |= self.visit_each::<L, ANY>(packet, 1 << ray, numbers) != 0;
+            found |= keep::<L>(packet, number, t, meets & L::Mask::first(count - start), ids);
         }
         found
     }
@@ -235,12 +233,6 @@ impl Stack {
             }
         }
     }
-}
-
-/// Three numbers of neighbouring primitives, from these columns of a leaf.
-#[inline(always)]
-fn vectors<L: Lanes>(numbers: &[f64], stride: usize, [x, y, z]: [usize; 3]) -> Vec3<L> {
-    Vec3::new(L::load(&numbers[x * stride..]), L::load(&numbers[y * stride..]), L::load(&numbers[z * stride..]))
 }
 
 /// Keeps the nearest of some hits; at equal distance that of the lower id.

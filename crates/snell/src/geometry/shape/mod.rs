@@ -1,0 +1,276 @@
+//! What rays can hit: a file for each shape, and one list of them all.
+//!
+//! ```text
+//!  shape/sphere.rs, triangle.rs, …     each one [`Shape`]: its numbers, its box, where rays meet it, what is there
+//!        │  one line for each in `shapes!`
+//!        ├──▶ Shapes       what a tree is built over: a list for each kind, numbered one after the other
+//!        ├──▶ of_kind      the leaves of the tree: runs of one kind, tested by one loop
+//!        └──▶ AnyShape     one shape, whatever its kind, for questions about a single hit
+//! ```
+//!
+//! To add a shape, write its file and add its line to the list: no tree, traversal or tracer knows which shapes there are.
+
+pub mod sphere;
+pub mod triangle;
+
+pub use sphere::Sphere;
+pub use triangle::{Triangle, Triangles};
+
+use super::bvh::Instance;
+use super::ray::Ray;
+use super::{Bounds, Vec3};
+use crate::lanes::Lanes;
+use std::fmt::Debug;
+use std::ops::Deref;
+
+/// A kind of shape, as the tree sees it: numbers in the columns of a leaf, and the test of rays against them.
+///
+/// Tests are written once for all numbers of lanes. In the lanes stand either rays, and the same shape in each, or shapes,
+/// and the same ray in each: by the same operations in the same order, so that the answer is the same to the bit.
+pub(crate) trait Shape: Surface + Copy + Debug + 'static {
+    /// So many numbers describe it in a leaf.
+    const NUMBERS: usize;
+
+    /// Does its test take vectors in the order of a ray's axes, with the shears ([`Heading`](super::ray::Heading))?
+    const SHEARED: bool;
+
+    /// Its numbers, in the order of the columns.
+    fn write(&self, put: impl FnMut(f64));
+
+    /// The shape that has these numbers.
+    fn read(number: impl Fn(usize) -> f64) -> Self;
+
+    /// May a ray that leaves it hit it again? `two_sided` as in [`Query`].
+    fn may_return(two_sided: bool) -> bool;
+
+    /// Where rays meet it, and whether they do. Of several such places the first beyond `query.t_min`; what has only one need not
+    /// look at that. Hits must lie in [`Surface::bounds`], to within the roundings for which the boxes of the tree have room.
+    fn intersect<L: Lanes>(ray: &Ray<L>, shape: impl Numbers<L>, query: &Query<L>) -> (L, L::Mask);
+
+    /// Every place where the line of a ray crosses it, on both sides of its origin, in ascending order.
+    fn crossings(ray: &Ray<f64>, shape: impl Numbers<f64>, found: impl FnMut(f64));
+}
+
+/// What is known of a single shape, whatever its kind.
+pub(crate) trait Surface {
+    /// A box that holds every hit.
+    fn bounds(&self) -> Bounds;
+
+    /// Is it curved everywhere, so that a ray which starts on it and goes outward is clear of it at once?
+    fn is_round(&self) -> bool {
+        false
+    }
+
+    /// Does a ray come from the side to which its normal points, if it crosses it at `t`?
+    fn enters(&self, origin: Vec3, dir: Vec3, t: f64) -> bool;
+
+    /// Is a crossing at `t` of a ray that leaves the shape only its start? Not if it is a far side of what the ray goes through.
+    /// Distances do not tell: at a grazing angle they are off by much.
+    fn starts_at(&self, origin: Vec3, dir: Vec3, t: f64) -> bool;
+
+    /// Where a line meets it, on the side on which it was met at about `t`.
+    fn meets_at(&self, origin: Vec3, dir: Vec3, t: f64) -> Option<f64>;
+
+    /// Its unit normal at a point on it, outward.
+    fn normal(&self, point: Vec3) -> Vec3;
+
+    /// Texture coordinates of a point on it.
+    fn uv(&self, point: Vec3) -> [f64; 2];
+
+    /// How far a point is from it.
+    fn distance(&self, point: Vec3) -> f64;
+}
+
+/// What a test needs to know of rays besides where they go.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Query<L: Lanes> {
+    /// Are spheres crossed from either side, or entered from outside only?
+    pub two_sided: bool,
+    /// Hits lie strictly beyond this distance.
+    pub t_min: L,
+    /// Which rays leave this shape. Of no meaning where none [may return](Shape::may_return).
+    pub leaves: L::Mask,
+}
+
+/// The numbers of shapes in lanes.
+pub(crate) trait Numbers<L: Lanes>: Copy {
+    /// One of them.
+    fn number(self, column: usize) -> L;
+
+    /// Three of them.
+    #[inline(always)]
+    fn vector(self, [x, y, z]: [usize; 3]) -> Vec3<L> {
+        Vec3::new(self.number(x), self.number(y), self.number(z))
+    }
+}
+
+/// The same shape of a leaf in every lane.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct One<'a> {
+    pub numbers: &'a [f64],
+    pub stride: usize,
+    pub place: usize,
+}
+
+impl<L: Lanes> Numbers<L> for One<'_> {
+    #[inline(always)]
+    fn number(self, column: usize) -> L {
+        L::splat(self.numbers[column * self.stride + self.place])
+    }
+}
+
+/// Neighbouring shapes of a leaf, one in each lane.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Neighbours<'a> {
+    /// From the first one on.
+    pub numbers: &'a [f64],
+    pub stride: usize,
+}
+
+impl<L: Lanes> Numbers<L> for Neighbours<'_> {
+    #[inline(always)]
+    fn number(self, column: usize) -> L {
+        L::load(&self.numbers[column * self.stride..])
+    }
+}
+
+/// Shapes in a row.
+pub(crate) trait ShapeList<S>: Copy + Default {
+    fn len(self) -> usize;
+    fn get(self, place: usize) -> S;
+}
+
+impl<S: Copy> ShapeList<S> for &[S] {
+    fn len(self) -> usize {
+        <[S]>::len(self)
+    }
+
+    fn get(self, place: usize) -> S {
+        self[place]
+    }
+}
+
+/// A shape's place in the list of kinds.
+pub(crate) trait Kind: Shape {
+    const KIND: usize;
+    fn list(shapes: &Shapes<'_>) -> impl ShapeList<Self>;
+    fn any(self) -> AnyShape;
+}
+
+/// Work that is done for shapes of one kind.
+pub(crate) trait ForKind {
+    type Output: Default;
+    fn run<S: Kind>(self) -> Self::Output;
+}
+
+macro_rules! shapes {
+    ($($Shape:ident, $list:ident: $List:ty, $what:literal;)+) => {
+        enum Order { $($Shape,)+ Count }
+
+        /// So many kinds there are.
+        pub(crate) const KINDS: usize = Order::Count as usize;
+
+        /// So many numbers describe a shape, by its kind.
+        pub(crate) const NUMBERS: [usize; KINDS] = [$($Shape::NUMBERS),+];
+
+        /// What a tree is built over, numbered in this order: kind by kind, then the instances.
+        #[derive(Clone, Copy, Debug, Default)]
+        pub struct Shapes<'a> {
+            $(#[doc = $what] pub $list: $List,)+
+            /// Where other trees stand.
+            pub instances: &'a [Instance],
+        }
+
+        $(impl Kind for $Shape {
+            const KIND: usize = Order::$Shape as usize;
+
+            fn list(shapes: &Shapes<'_>) -> impl ShapeList<Self> {
+                shapes.$list
+            }
+
+            fn any(self) -> AnyShape {
+                AnyShape::$Shape(self)
+            }
+        })+
+
+        /// Does some work for the kind of this number.
+        #[inline(always)]
+        pub(crate) fn of_kind<W: ForKind>(kind: usize, work: W) -> W::Output {
+            $(if kind == $Shape::KIND {
+                return work.run::<$Shape>();
+            })+
+            W::Output::default()
+        }
+
+        /// A shape of any kind.
+        #[derive(Clone, Copy, Debug)]
+        pub(crate) enum AnyShape { $($Shape($Shape),)+ }
+
+        impl Deref for AnyShape {
+            type Target = dyn Surface;
+
+            fn deref(&self) -> &Self::Target {
+                match self { $(Self::$Shape(shape) => shape,)+ }
+            }
+        }
+    };
+}
+
+shapes! {
+    Sphere, spheres: &'a [Sphere], "The spheres.";
+    Triangle, triangles: Triangles<'a>, "The triangles.";
+}
+
+impl Shapes<'_> {
+    /// The number of the first shape of each kind, of the first instance, and of all.
+    pub(crate) fn firsts(&self) -> [usize; KINDS + 2] {
+        let mut firsts = [0; KINDS + 2];
+        for kind in 0..KINDS {
+            firsts[kind + 1] = firsts[kind] + of_kind(kind, Count(self));
+        }
+        firsts[KINDS + 1] = firsts[KINDS] + self.instances.len();
+        firsts
+    }
+
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        self.firsts()[KINDS + 1]
+    }
+
+    /// The box of one of them.
+    pub fn bounds(&self, number: usize) -> Bounds {
+        self.bounds_from(&self.firsts(), number)
+    }
+
+    /// The same, where the [`firsts`](Self::firsts) are known.
+    pub(crate) fn bounds_from(&self, firsts: &[usize; KINDS + 2], number: usize) -> Bounds {
+        let kind = kind_of(firsts, number);
+        if kind == KINDS {
+            return self.instances[number - firsts[KINDS]].bounds;
+        }
+        of_kind(kind, BoundsOf(self, number - firsts[kind])).unwrap_or(Bounds::EMPTY)
+    }
+}
+
+/// The kind of a number, from those of the first of each; [`KINDS`] for instances.
+pub(crate) fn kind_of(firsts: &[usize; KINDS + 2], number: usize) -> usize {
+    firsts[1..=KINDS].partition_point(|&first| first <= number)
+}
+
+struct Count<'s, 'a>(&'s Shapes<'a>);
+
+impl ForKind for Count<'_, '_> {
+    type Output = usize;
+    fn run<S: Kind>(self) -> usize {
+        S::list(self.0).len()
+    }
+}
+
+struct BoundsOf<'s, 'a>(&'s Shapes<'a>, usize);
+
+impl ForKind for BoundsOf<'_, '_> {
+    type Output = Option<Bounds>;
+    fn run<S: Kind>(self) -> Option<Bounds> {
+        Some(S::list(self.0).get(self.1).bounds())
+    }
+}
