@@ -24,7 +24,7 @@ use crate::film::Rgb;
 use crate::geometry::bvh::{Bvh, Quality, TreeStatistics};
 use crate::geometry::{Affine, Bounds, Sphere};
 use crate::optics::spectrum::Band;
-use crate::scene::{Integrator, Material, Mesh, Problem, Render, Scene, Step, Warning, validate};
+use crate::scene::{Integrator, Material, Mesh, Problem, Problems, Render, Scene, Step, Warning, validate};
 
 /// An object of the scene: the primitives `first .. first + count`.
 #[derive(Clone, Debug, PartialEq)]
@@ -96,7 +96,7 @@ impl World {
     ///
     /// # Errors
     /// Everything that is wrong with the scene. A mesh that names a file must have been read before.
-    pub fn new(scene: &Scene) -> Result<Self, Vec<Problem>> {
+    pub fn new(scene: &Scene) -> Result<Self, Problems> {
         Self::build(scene, Quality::default(), 0)
     }
 
@@ -105,7 +105,7 @@ impl World {
     ///
     /// # Errors
     /// As [`World::new`].
-    pub fn build(scene: &Scene, quality: Quality, threads: usize) -> Result<Self, Vec<Problem>> {
+    pub fn build(scene: &Scene, quality: Quality, threads: usize) -> Result<Self, Problems> {
         let warnings = validate(scene)?;
         let mut world = Self {
             render: scene.render.clone(),
@@ -139,7 +139,7 @@ impl World {
             let message = "the image plane is so near to the eye that it is lost in rounding".to_owned();
             let place = vec![Step::from("camera"), Step::from("near")];
             let help = "move it away from the eye: let `near` be more negative, and `bounds` larger by the same factor";
-            return Err(vec![Problem { place, message, help: Some(help.to_owned()), remedy: None }]);
+            return Err(Problem { place, message, help: Some(help.to_owned()), remedy: None }.into());
         }
         if world.materials.is_empty() {
             // Where nothing is, nobody asks what it is made of; but rows of the background are rows like others.
@@ -151,13 +151,11 @@ impl World {
         world.find_patterns(scene)?;
         world.leave_out_thickness();
         for (i, sphere) in scene.spheres.iter().enumerate() {
-            world.add_sphere(i, sphere, &material_ids).map_err(|problem| vec![problem])?;
+            world.add_sphere(i, sphere, &material_ids)?;
         }
         world.surfaces.corner_normals_of.resize(world.spheres.len(), FLAT);
         let mut parts = Parts::default();
-        let mut add = |kind, i, mesh: &Mesh| {
-            world.add_mesh((kind, i), mesh, &material_ids, &mut parts).map_err(|problem| vec![problem])
-        };
+        let mut add = |kind, i, mesh: &Mesh| world.add_mesh((kind, i), mesh, &material_ids, &mut parts);
         scene.meshes.iter().enumerate().try_for_each(|(i, mesh)| add("mesh", i, mesh))?;
         scene.planes.iter().enumerate().try_for_each(|(i, plane)| add("plane", i, &plane.mesh(i)))?;
         scene.boxes.iter().enumerate().try_for_each(|(i, cuboid)| add("box", i, &cuboid.mesh(i)))?;
@@ -168,7 +166,7 @@ impl World {
                 surfaces.corner_normals_of = Vec::new();
             }
         }
-        world.build_tree(&parts, quality, threads).map_err(|problem| vec![problem])?;
+        world.build_tree(&parts, quality, threads)?;
         world.find_lights_on_surfaces(scene, &parts);
         world.warnings.extend(world.before_image_plane());
         Ok(world)
@@ -237,7 +235,7 @@ impl World {
 }
 
 /// A picture that the scene names has not been read.
-fn unread(key: &str) -> Vec<Problem> {
+fn unread(key: &str) -> Problem {
     let place = vec![Step::from(key), Step::from("image")];
-    vec![Problem { place, message: "this picture has not been read".to_owned(), help: None, remedy: None }]
+    Problem { place, message: "this picture has not been read".to_owned(), help: None, remedy: None }
 }

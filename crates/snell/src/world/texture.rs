@@ -3,7 +3,7 @@
 use super::World;
 use crate::film::Rgb;
 use crate::geometry::{Affine, Vec3};
-use crate::scene::{Integrator, Material, Problem, Scene, Sky, Step, Texture};
+use crate::scene::{Integrator, Material, Problem, Problems, Scene, Sky, Step, Texture};
 use crate::texture::{Image, barycentric, checker, latlong_uv, sphere_uv};
 use std::sync::Arc;
 
@@ -125,11 +125,11 @@ impl Background {
 
 impl World {
     /// Finds the patterns of all materials.
-    pub(super) fn find_patterns(&mut self, scene: &Scene) -> Result<(), Vec<Problem>> {
+    pub(super) fn find_patterns(&mut self, scene: &Scene) -> Result<(), Problems> {
         for (name, texture) in &scene.textures {
             let unread = || {
                 let place = ["texture", name, "image"].map(Step::from).to_vec();
-                vec![Problem { place, message: "this picture has not been read".to_owned(), help: None, remedy: None }]
+                Problem { place, message: "this picture has not been read".to_owned(), help: None, remedy: None }
             };
             self.patterns.push(Pattern::new(texture, scene.render.integrator).ok_or_else(unread)?);
         }
