@@ -13,7 +13,7 @@ use snell::geometry::bvh::{Bvh, MARGIN, Quality, Shapes};
 use snell::geometry::shape::Triangles;
 use snell::geometry::{Bounds, Sphere};
 use snell::render::{LaneWidth, Options};
-use snell::scene::{Problem, Scene};
+use snell::scene::{Problems, Scene};
 use snell::world::World;
 use std::hint::black_box;
 use std::time::{Duration, Instant};
@@ -44,8 +44,7 @@ pub fn build(scene: &Scene, threads: usize) -> Result<(World, Duration), String>
     let tree = Bvh::build(&shapes, vec![], MARGIN * everything.diagonal(), Quality::Good, threads);
     let time = start.elapsed();
     drop(black_box(tree));
-    let problems = |found: Vec<Problem>| found.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ");
-    Ok((World::build(scene, Quality::Good, threads).map_err(problems)?, time))
+    Ok((World::build(scene, Quality::Good, threads).map_err(|problems: Problems| problems.to_string())?, time))
 }
 
 /// A well-mixing hash of 32 bits: Wellons, *Prospecting for Hash Functions*, 2018, "lowbias32".

@@ -7,7 +7,7 @@ use crate::scene::Inline;
 use pyo3::prelude::*;
 use snell::film::Crop;
 use snell::geometry::bvh::Quality;
-use snell::scene::{Mesh, Problem, Scene, Warning};
+use snell::scene::{Mesh, Problems, Scene, Warning};
 use snell::world::World;
 use snell_formats::load::{Kind, ModelFile, load_with};
 use snell_formats::scene_file::{self, Syntax};
@@ -88,7 +88,7 @@ impl Ready {
 
 /// Compiles a scene. Here, and nowhere else, a world is made; and here belongs the choice to make it of the world that stands
 /// for a scene with other materials, lights or another camera.
-fn compile(scene: &Scene) -> Result<World, Vec<Problem>> {
+fn compile(scene: &Scene) -> Result<World, Problems> {
     World::build(scene, Quality::default(), 0)
 }
 

@@ -182,7 +182,7 @@ fn an_interface_must_have_two_sides() {
     let geometry = Some(Arc::new(TriangleMesh { vertices, faces, ..TriangleMesh::default() }));
     let (material, inside) = (Some("glass".to_owned()), Some("glass".to_owned()));
     scene.meshes.push(Mesh { geometry, material, inside, ..Mesh::default() });
-    let problem = World::new(&scene).unwrap_err().remove(0);
+    let problem = World::new(&scene).unwrap_err()[0].clone();
     assert!(problem.message.contains("neighbouring faces look opposite ways"), "{problem}");
 }
 

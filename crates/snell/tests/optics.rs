@@ -349,7 +349,7 @@ fn an_open_transparent_mesh_is_refused_and_says_where() {
     let mut scene = furnace(8);
     glass(&mut scene, "glass", 1.5, 0);
     mesh(&mut scene, open, "glass");
-    let problem = World::new(&scene).unwrap_err().remove(0);
+    let problem = World::new(&scene).unwrap_err()[0].clone();
     assert!(problem.message.contains("not a solid: it is open along 3 edges"), "{problem}");
     scene.meshes[0].open = Some(snell::scene::OpenMesh::Fill);
     let filled = picture(&scene);

@@ -109,7 +109,7 @@ fn a_placed_sphere_is_another_sphere() {
     }
     assert!(picture(&written).pixels == picture(&placed).pixels);
     placed.spheres[0].transform = vec![Transform::Scale([1.0, 2.0, 1.0])];
-    let problem = World::new(&placed).unwrap_err().remove(0);
+    let problem = World::new(&placed).unwrap_err()[0].clone();
     assert!(problem.message.contains("must stay a sphere"), "{problem}");
 }
 
@@ -298,7 +298,7 @@ fn sellmeiers_coefficients_are_the_glass() {
 fn what_is_not_built_yet_is_named() {
     let mut scene = furnace(2);
     scene.render.shadows = Some(Shadows::Caustic);
-    let problem = World::new(&scene).unwrap_err().remove(0);
+    let problem = World::new(&scene).unwrap_err()[0].clone();
     assert!(problem.message.contains("not built yet"), "{problem}");
 }
 

@@ -87,7 +87,7 @@ pub struct Mesh {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum OpenMesh {
-    /// Its holes are closed, as [`repair`](crate::geometry::solid::repair()) does.
+    /// Its holes are closed, as far as that needs no guessing.
     Fill,
     /// Nothing goes through it.
     Opaque,

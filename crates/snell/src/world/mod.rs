@@ -27,7 +27,7 @@ use crate::film::Rgb;
 use crate::geometry::bvh::{Bvh, Quality, TreeStatistics};
 use crate::geometry::{Affine, Bounds, Sphere};
 use crate::optics::spectrum::{self, Band};
-use crate::scene::{Integrator, Mesh, Problem, Scene, Step, Warning, validate};
+use crate::scene::{Integrator, Mesh, Problem, Problems, Scene, Step, Warning, validate};
 
 /// An object of the scene: the primitives `first .. first + count`.
 #[derive(Clone, Debug, PartialEq)]
@@ -96,7 +96,7 @@ impl World {
     ///
     /// # Errors
     /// Everything that is wrong with the scene. A mesh that names a file must have been read before.
-    pub fn new(scene: &Scene) -> Result<Self, Vec<Problem>> {
+    pub fn new(scene: &Scene) -> Result<Self, Problems> {
         Self::build(scene, Quality::default(), 0)
     }
 
@@ -105,7 +105,7 @@ impl World {
     ///
     /// # Errors
     /// As [`World::new`].
-    pub fn build(scene: &Scene, quality: Quality, threads: usize) -> Result<Self, Vec<Problem>> {
+    pub fn build(scene: &Scene, quality: Quality, threads: usize) -> Result<Self, Problems> {
         let warnings = validate(scene)?;
         let has_media = scene.render.integrator.has_media();
         let bands =
@@ -143,18 +143,16 @@ impl World {
             let message = "the image plane is so near to the eye that it is lost in rounding".to_owned();
             let place = vec![Step::from("camera"), Step::from("near")];
             let help = "move it away from the eye: let `near` be more negative, and `bounds` larger by the same factor";
-            return Err(vec![Problem { place, message, help: Some(help.to_owned()), remedy: None }]);
+            return Err(Problem { place, message, help: Some(help.to_owned()), remedy: None }.into());
         }
         let material_ids: MaterialIds<'_> =
             scene.materials.keys().enumerate().map(|(i, name)| (name.as_str(), i as u32)).collect();
         for (i, sphere) in scene.spheres.iter().enumerate() {
-            world.add_sphere(i, sphere, &material_ids).map_err(|problem| vec![problem])?;
+            world.add_sphere(i, sphere, &material_ids)?;
         }
         world.surfaces.corner_normals_of.resize(world.spheres.len(), FLAT);
         let mut parts = Parts::of(scene.render.integrator);
-        let mut add = |kind, i, mesh: &Mesh| {
-            world.add_mesh((kind, i), mesh, &material_ids, &mut parts).map_err(|problem| vec![problem])
-        };
+        let mut add = |kind, i, mesh: &Mesh| world.add_mesh((kind, i), mesh, &material_ids, &mut parts);
         scene.meshes.iter().enumerate().try_for_each(|(i, mesh)| add("mesh", i, mesh))?;
         scene.planes.iter().enumerate().try_for_each(|(i, plane)| add("plane", i, &plane.mesh(i)))?;
         scene.boxes.iter().enumerate().try_for_each(|(i, cuboid)| add("box", i, &cuboid.mesh(i)))?;
@@ -165,7 +163,7 @@ impl World {
                 surfaces.corner_normals_of = Vec::new();
             }
         }
-        world.build_tree(&parts, quality, threads).map_err(|problem| vec![problem])?;
+        world.build_tree(&parts, quality, threads)?;
         world.find_lights_on_surfaces(scene, &parts);
         world.warnings.extend(world.before_image_plane(scene.render.spp));
         Ok(world)
@@ -226,7 +224,7 @@ impl World {
 }
 
 /// A picture that the scene names has not been read.
-fn unread(key: &str) -> Vec<Problem> {
+fn unread(key: &str) -> Problem {
     let place = vec![Step::from(key), Step::from("image")];
-    vec![Problem { place, message: "this picture has not been read".to_owned(), help: None, remedy: None }]
+    Problem { place, message: "this picture has not been read".to_owned(), help: None, remedy: None }
 }

@@ -4,7 +4,7 @@ use super::World;
 use super::material::NONE;
 use crate::film::Rgb;
 use crate::geometry::{Affine, Vec3};
-use crate::scene::{Problem, Scene, Sky, Step, Texture};
+use crate::scene::{Problem, Problems, Scene, Sky, Step, Texture};
 use crate::texture::{Image, checker, latlong_uv, sphere_uv};
 use std::sync::Arc;
 
@@ -125,15 +125,15 @@ impl Background {
 }
 
 /// The patterns of all textures, in their order.
-pub(super) fn patterns(scene: &Scene, has_media: bool) -> Result<Vec<Pattern>, Vec<Problem>> {
+pub(super) fn patterns(scene: &Scene, has_media: bool) -> Result<Vec<Pattern>, Problems> {
     let of = |(name, texture): (&String, &Texture)| {
         let unread = || {
             let place = ["texture", name, "image"].map(Step::from).to_vec();
-            vec![Problem { place, message: "this picture has not been read".to_owned(), help: None, remedy: None }]
+            Problem { place, message: "this picture has not been read".to_owned(), help: None, remedy: None }
         };
         Pattern::new(texture, has_media).ok_or_else(unread)
     };
-    scene.textures.iter().map(of).collect()
+    Ok(scene.textures.iter().map(of).collect::<Result<_, Problem>>()?)
 }
 
 impl World {

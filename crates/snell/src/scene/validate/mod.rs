@@ -11,9 +11,8 @@ mod view;
 
 pub use name::is_unprintable;
 
-use super::{Integrator, Scene, Shadows, Warning, WarningCode};
+use super::{Integrator, Problem, Problems, Scene, Shadows, Step, Warning, WarningCode};
 use crate::film::Rgb;
-use std::fmt;
 
 /// Numbers beyond this are refused: their squares must fit into the `f32` boxes of the tree.
 pub const LARGEST_NUMBER: f64 = 1e15;
@@ -26,64 +25,6 @@ pub const MAX_BANDS: u32 = 64;
 
 /// More samples per pixel are refused: Sobol's sequence has no more.
 pub const MAX_SPP: u32 = 1 << 16;
-
-/// One step on the way to a value in a scene: `sphere`, `2`, `radius`.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Step {
-    /// A key of a table.
-    Key(String),
-    /// An element of a list, counted from 0.
-    Index(usize),
-}
-
-impl From<&str> for Step {
-    fn from(key: &str) -> Self {
-        Self::Key(key.to_owned())
-    }
-}
-
-impl From<usize> for Step {
-    fn from(index: usize) -> Self {
-        Self::Index(index)
-    }
-}
-
-/// What helps besides a change of the scene. It is done with tools of whoever shows the problem, who names them.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Remedy {
-    /// To look at where a mesh is open, or its faces are turned.
-    CheckMesh,
-    /// To turn the faces of a mesh to one side.
-    RepairMesh,
-}
-
-/// Why a scene cannot be drawn.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Problem {
-    /// Where in the scene, from the root.
-    pub place: Vec<Step>,
-    /// What was read and what was expected.
-    pub message: String,
-    /// What to do about it in the scene.
-    pub help: Option<String>,
-    /// What to do about it elsewhere.
-    pub remedy: Option<Remedy>,
-}
-
-impl fmt::Display for Problem {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (i, step) in self.place.iter().enumerate() {
-            match step {
-                Step::Key(key) if i == 0 => write!(f, "{key}")?,
-                Step::Key(key) => write!(f, ".{key}")?,
-                Step::Index(index) => write!(f, "[{index}]")?,
-            }
-        }
-        write!(f, ": {}", self.message)
-    }
-}
-
-impl std::error::Error for Problem {}
 
 #[derive(Default)]
 struct Findings {
@@ -137,7 +78,7 @@ impl Findings {
 ///
 /// # Errors
 /// All problems, in the order of the scene.
-pub fn validate(scene: &Scene) -> Result<Vec<Warning>, Vec<Problem>> {
+pub fn validate(scene: &Scene) -> Result<Vec<Warning>, Problems> {
     let mut found = Findings::default();
     settings(scene, &mut found);
     view::camera(scene, &mut found);
@@ -154,7 +95,7 @@ pub fn validate(scene: &Scene) -> Result<Vec<Warning>, Vec<Problem>> {
     material::indices(scene, &mut found);
     only_whitted(scene, &mut found);
     name::names(scene, &mut found);
-    if found.problems.is_empty() { Ok(found.warnings) } else { Err(found.problems) }
+    Problems::of(found.problems).map_or(Ok(found.warnings), Err)
 }
 
 fn settings(scene: &Scene, found: &mut Findings) {
