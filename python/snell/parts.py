@@ -100,7 +100,7 @@ class Material(Value):
     priority : int
         `whitted`: where solids overlap, the one of the highest priority is there, among equals the one that was
         entered last; by default 0.
-    dyed : bool
+    tinted_transmission : bool
         `whitted`: what goes through the surface takes its diffuse colour `kd`; by default it does not.
 
     Examples
@@ -127,7 +127,7 @@ class Material(Value):
     attenuation_distance: float | None = field(default=None, kw_only=True)
     sigma_a: Color | None = field(default=None, kw_only=True)
     priority: int = field(default=0, kw_only=True)
-    dyed: bool = field(default=False, kw_only=True)
+    tinted_transmission: bool = field(default=False, kw_only=True)
 
     colors: ClassVar[frozenset[str]] = frozenset(
         {"ka", "kd", "ks", "kr", "ko", "emission", "attenuation_color", "sigma_a"}

@@ -30,14 +30,14 @@ def test_all_kinds_of_controls() -> None:
         "render.integrator": ["lecture", "whitted"],
         "sphere.glass.radius": (5, 9),
         "light.left.color": (0.0, 1.0, 0.25),
-        "material.glass.dyed": [False, True],
+        "material.glass.tinted_transmission": [False, True],
     }
     ball = snell.interact(SCENE, controls, max_depth=(0, 8), width=8)
     assert ball.values == {
         "render.integrator": "lecture",
         "sphere.glass.radius": 9,
         "light.left.color": 0.75,
-        "material.glass.dyed": False,
+        "material.glass.tinted_transmission": False,
         "render.max_depth": 6,
     }
 

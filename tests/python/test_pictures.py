@@ -261,7 +261,7 @@ def test_the_readme_is_right(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
 
 
 def test_odd_scenes_warn() -> None:
-    scene = snell.scenes["lecture/default"].with_("material.glass.dyed", True)
+    scene = snell.scenes["lecture/default"].with_("material.glass.tinted_transmission", True)
     draw: list[Callable[[], object]] = [
         lambda: scene.render(width=8),
         lambda: scene.view(width=8),

@@ -406,10 +406,10 @@ fn a_card_has_two_sides_and_no_edge() {
     assert!(picture(&scene).pixels.iter().all(|&pixel| pixel == scene.background), "edge on");
 }
 
-/// A picture on glass is paint: where it is not there the glass is what it was, and is dyed by the picture as far as that is there.
+/// A picture on glass is paint: where it is not there the glass is what it was, and is tinted by the picture as far as that is there.
 #[test]
 fn a_decal_leaves_the_glass_what_it_is() {
-    let of = |ko: f64, alpha: Option<f32>, thickness: Option<f64>, dyed: bool| {
+    let of = |ko: f64, alpha: Option<f32>, thickness: Option<f64>, tinted_transmission: bool| {
         let mut scene = room();
         scene.render.min_throughput = 0.0;
         glass(&mut scene, "decal", 1.5, 1);
@@ -421,7 +421,7 @@ fn a_decal_leaves_the_glass_what_it_is() {
             ks: Rgb::gray(0.0),
             eta: 1.5,
             thickness,
-            dyed,
+            tinted_transmission,
             ..scene.materials["decal"].clone()
         };
         scene.materials["decal"] = Material { ka: Rgb::gray(1.0), kd: Rgb::gray(1.0), ..look };

@@ -498,7 +498,8 @@ fn a_mirrored_hollow_box_is_hollow() {
 #[test]
 fn a_gel_dyes_what_goes_through() {
     let mut scene = furnace(1);
-    let gel = Material { ko: Rgb::gray(0.0), kd: Rgb::new(0.9, 0.4, 0.1), dyed: true, ..Material::default() };
+    let gel =
+        Material { ko: Rgb::gray(0.0), kd: Rgb::new(0.9, 0.4, 0.1), tinted_transmission: true, ..Material::default() };
     scene.materials.insert("gel".to_owned(), gel.clone());
     mesh(&mut scene, cuboid([-1.0; 3], [1.0; 3]), "gel");
     assert_eq!(tree(&scene, [0.1, 0.2, 5.0], [0.0, 0.0, -1.0]).sum(), gel.kd);

@@ -302,7 +302,7 @@ fn what_is_not_built_yet_is_named() {
     assert!(problem.message.contains("not built yet"), "{problem}");
 }
 
-/// A light with a pattern in its way: `dyed` glass colours the light that goes through by its texture.
+/// A light with a pattern in its way: glass with `tinted_transmission` colours the light that goes through by its texture.
 #[test]
 fn a_pattern_on_glass_dyes_shadows() {
     let mut scene = dark_room(1);
@@ -314,7 +314,7 @@ fn a_pattern_on_glass_dyes_shadows() {
     let stained = Material {
         ko: Rgb::gray(0.0),
         kd: Rgb::gray(1.0),
-        dyed: true,
+        tinted_transmission: true,
         thickness: Some(0.0),
         texture: Some("stained".to_owned()),
         ..Material::default()

@@ -29,7 +29,7 @@ fn floor() -> Scene {
     scene
 }
 
-fn dyed(scene: &mut Scene, depth: f64) {
+fn tinted(scene: &mut Scene, depth: f64) {
     scene.materials["glass"].sigma_a = Some(Rgb::gray(depth));
 }
 
@@ -69,7 +69,7 @@ fn a_plate_absorbs_over_the_refracted_way() {
     }
     for degrees in [0.0, 30.0, 60.0, 80.0] {
         let mut scene = floor();
-        dyed(&mut scene, depth);
+        tinted(&mut scene, depth);
         mesh(&mut scene, plate().transformed(&turned(degrees)), "glass");
         let (found, [known, ..]) = (passed(&scene), expected(degrees, depth));
         // Hits are good to a clearance, 1e-12 here, of a way of at least 1; at 80 degrees that is 6 times as long.
@@ -84,7 +84,7 @@ fn a_plate_is_a_plate_whatever_it_is_made_of() {
     let plate = plate().transformed(&turned(60.0));
     let with = |change: &dyn Fn(&mut Scene)| {
         let mut scene = floor();
-        dyed(&mut scene, DEPTH);
+        tinted(&mut scene, DEPTH);
         change(&mut scene);
         passed(&scene)
     };
@@ -155,7 +155,7 @@ fn plates_of_all_sizes_let_the_same_light_through() {
     let [known, ..] = expected(60.0, DEPTH);
     for (factor, offset) in [(1e-9, 0.0), (1e9, 0.0), (1.0, 1e6)] {
         let mut scene = floor();
-        dyed(&mut scene, DEPTH / factor);
+        tinted(&mut scene, DEPTH / factor);
         let map = turned(60.0).then(Affine::scaling(Vec3::new(factor, factor, factor)));
         let map = map.then(Affine::translation(Vec3::new(offset, offset, offset)));
         mesh(&mut scene, plate().transformed(&map), "glass");
@@ -188,7 +188,7 @@ fn the_published_error_of_tinted_shadows_is_that_of_plates() {
         let degrees = cells[0];
         for (depth, cells) in [(0.0, &cells[1..4]), (DEPTH, &cells[4..7])] {
             let mut scene = floor();
-            dyed(&mut scene, depth);
+            tinted(&mut scene, depth);
             mesh(&mut scene, plate().transformed(&turned(degrees)), "glass");
             let (drawn, [_, exact, _]) = (passed(&scene), expected(degrees, depth));
             // Four digits are printed, and of percent one.

@@ -21,7 +21,16 @@ fn stage_of_glass() -> Scene {
         ("crown", Material { eta: 1.5, ..clear.clone() }),
         ("water", Material { eta: 1.33, priority: 1, sigma_a: Some(Rgb::new(0.05, 0.01, 0.0)), ..clear.clone() }),
         ("flint", Material { eta: 1.8, attenuation_color: green, attenuation_distance: Some(8.0), ..clear.clone() }),
-        ("milk", Material { eta: 1.4, ko: Rgb::gray(0.4), kd: Rgb::new(0.9, 0.8, 0.7), dyed: true, ..clear.clone() }),
+        (
+            "milk",
+            Material {
+                eta: 1.4,
+                ko: Rgb::gray(0.4),
+                kd: Rgb::new(0.9, 0.8, 0.7),
+                tinted_transmission: true,
+                ..clear.clone()
+            },
+        ),
         ("nothing", clear.clone()),
         ("prism", Material { glass: Some("SF11".to_owned()), ..clear }),
         ("lamp", Material { emission: Rgb::new(0.9, 0.8, 0.5), ..Material::default() }),
@@ -108,8 +117,12 @@ pub fn windows() -> Scene {
     });
     (scene.render.spp, scene.render.seed) = (3, 5);
     let pane = Material { ko: Rgb::gray(0.0), eta: 1.5, thickness: Some(2.0), ..Material::default() };
-    let film =
-        Material { thickness: Some(0.0), sigma_a: Some(Rgb::gray(0.1)), dyed: true, ..scene.materials["milk"].clone() };
+    let film = Material {
+        thickness: Some(0.0),
+        sigma_a: Some(Rgb::gray(0.1)),
+        tinted_transmission: true,
+        ..scene.materials["milk"].clone()
+    };
     scene.materials.extend([("pane".to_owned(), pane), ("film".to_owned(), film)]);
     let texels = (0..12).map(|i| [0.1 * i as f32, 0.5, 1.0 - 0.08 * i as f32]).collect();
     let image = Arc::new(Image::new(4, 3, texels).unwrap());

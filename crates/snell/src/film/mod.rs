@@ -36,7 +36,7 @@ pub struct Film {
 
 /// The film does not fit into memory.
 #[derive(Clone, Copy, Debug, thiserror::Error)]
-#[error("a film of {width} x {height} pixels needs {bytes} bytes of memory, and they are not to be had")]
+#[error("a film of {width} x {height} pixels needs {bytes} bytes of memory, which cannot be allocated")]
 pub struct FilmTooLarge {
     /// Columns asked for.
     pub width: u32,

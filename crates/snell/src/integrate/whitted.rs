@@ -5,7 +5,7 @@
 //! | --- | --- | --- |
 //! | the hit adds | `ko × local + a × emission` | nothing |
 //! | mirror ray | `ko·kr + (1 − ko)·R` | `R` |
-//! | refracted ray | `(1 − ko)·(1 − R)`, times `kd` if it is dyed | `1 − R` |
+//! | refracted ray | `(1 − ko)·(1 − R)`, times `kd` with tinted transmission | `1 − R` |
 //!
 //! all times the throughput. `R` is Fresnel's reflectance of the interface; total internal reflection is `R = 1`. Radiance is
 //! carried as `L/n²`, which an interface does not change. A surface that lets nothing through has `ko` 1.
@@ -211,12 +211,12 @@ fn scatter<L: Lanes>(
     let own = ko * hits.local_color() + emission;
     let contribution = throughput * Rgb::select(hits.is_sky(), background(hits), own);
 
-    let dyed = hits.material(
+    let tinted = hits.material(
         #[inline(always)]
         |m| m.tints,
     );
-    let dyes = outer & dyed.gt(zero) & !cut_out;
-    let (clear, dye) = (white - ko, if dyes.any() { Rgb::select(dyes, hits.dye(), white) } else { white });
+    let tints = outer & tinted.gt(zero) & !cut_out;
+    let (clear, dye) = (white - ko, if tints.any() { Rgb::select(tints, hits.dye(), white) } else { white });
 
     let to = Directions::new(hits, relative_index(hits, media, None));
     let mut reflectance = Rgb::new(to.reflectance, to.reflectance, to.reflectance);

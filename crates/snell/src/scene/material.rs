@@ -62,9 +62,9 @@ pub struct Material {
     /// `whitted`: where solids overlap, the one of the highest priority is there; among equals the one entered last.
     #[serde(skip_serializing_if = "is_default")]
     pub priority: i32,
-    /// `whitted`: what goes through the surface takes its diffuse colour `kd`.
-    #[serde(skip_serializing_if = "is_default")]
-    pub dyed: bool,
+    /// `whitted`: transmitted light is multiplied by the diffuse colour `kd`. Older files call it `dyed`.
+    #[serde(skip_serializing_if = "is_default", alias = "dyed")]
+    pub tinted_transmission: bool,
 }
 
 fn is_default<T: Default + PartialEq>(value: &T) -> bool {
@@ -93,7 +93,7 @@ impl Default for Material {
             attenuation_distance: None,
             sigma_a: None,
             priority: 0,
-            dyed: false,
+            tinted_transmission: false,
         }
     }
 }

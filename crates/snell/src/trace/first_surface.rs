@@ -67,7 +67,7 @@ impl Propagation for FirstSurface {
                     let mask = L::Mask::from_bits((hit >> start) as u32);
                     if mask.any() {
                         let (t, primitive) = (L::load(&packet.t[start..]), L::load(&packet.primitive[start..]));
-                        let (line, row) = (packet.ways(start), first + start);
+                        let (line, row) = (packet.lines(start), first + start);
                         hits.push(mask, row, line, t, primitive, rays);
                     }
                 }

@@ -163,7 +163,7 @@ impl<P: Propagation> Hits<P> {
                         if !rim.test(lane) {
                             continue;
                         }
-                        let front = world.front_of_outline(primitives[lane], point.lane(lane), dir.lane(lane));
+                        let front = world.front_of_silhouette(primitives[lane], point.lane(lane), dir.lane(lane));
                         if let Some(front) = front {
                             let found = self.found.rows::<f64>(start + lane);
                             self.found.replace(start + lane, &Found { primitive: f64::from(front), ..found });

@@ -294,7 +294,7 @@ impl<G: Generation<Interfaces>> Kernel for FindInterfaces<'_, '_, G> {
                 // Every body ends somewhere: a ray that leaves the scene in one has missed its way out.
                 let before = index(paths.before[ray]) as u32;
                 if before != OUTSIDE {
-                    let (origin, dir) = packet.ways::<f64>(ray);
+                    let (origin, dir) = packet.lines::<f64>(ray);
                     let ahead = paths.clear[ray].max(packet.t_min[ray]).min(world.reach) + together_at_most(world);
                     if media.is_lost(before, origin + dir * ahead) {
                         statistics.stray.add(index(rays.pixels(first + ray)));
@@ -306,7 +306,7 @@ impl<G: Generation<Interfaces>> Kernel for FindInterfaces<'_, '_, G> {
                 // From the place itself; but in a corner, where that may be behind what is met, all is as it was asked for.
                 let (origin, dir) = rays.lines::<f64>(first + ray);
                 let t = world.meets_at(index(packet.primitive[ray]), origin, dir, packet.t[ray]);
-                if let Some(t) = t.filter(|&t| t > 8.0 * world.clearance) {
+                if let Some(t) = t.filter(|&t| t > 8.0 * world.coincidence_tolerance) {
                     packet.start_at(ray, origin);
                     packet.t[ray] = t;
                 }
@@ -322,7 +322,7 @@ impl<G: Generation<Interfaces>> Kernel for FindInterfaces<'_, '_, G> {
                     let row = first + start;
                     // The background is nowhere.
                     let at = L::select(primitive.eq(L::splat(SKY)), L::splat(0.0), t);
-                    hits.push(mask, row, packet.ways(start), at, primitive, rays);
+                    hits.push(mask, row, packet.lines(start), at, primitive, rays);
                     hits.push_faces(mask, &paths.face::<L>(start));
                 }
             }
@@ -391,13 +391,13 @@ impl Paths {
         self.left[start..start + L::WIDTH].fill(0);
         // At an edge a ray may have crossed a face by rounding a little before it starts.
         let anywhere = source.lt(zero) & medium.eq(L::splat(f64::from(OUTSIDE)));
-        L::select(anywhere, zero, L::splat(-world.behind)).store(&mut packet.t_min[start..]);
+        L::select(anywhere, zero, L::splat(-world.exit_tolerance)).store(&mut packet.t_min[start..]);
         packet.move_starts(start, back);
         u64::from(back.dot(back).gt(zero).bits())
     }
 
     fn leaving(&self, packet: &Packet, ray: usize) -> Leaving {
-        let (origin, dir) = packet.ways::<f64>(ray);
+        let (origin, dir) = packet.lines::<f64>(ray);
         let [x, y, z] = &self.back;
         let back = Vec3::new(x[ray], y[ray], z[ray]);
         let wo = if back == Vec3::default() { -dir } else { back };
@@ -413,18 +413,18 @@ impl Paths {
         }
         if world.is_cut_out(index(source)) {
             // It starts in front of its face.
-            let (origin, dir) = packet.ways::<f64>(ray);
+            let (origin, dir) = packet.lines::<f64>(ray);
             return t <= self.clear[ray] && !world.is_opaque_at(primitive as usize, origin + dir * t);
         }
         // A pane shifts aside by its thickness at most; beyond an edge that is on its next face.
         let within = world.object_of(primitive) == world.object_of(index(source) as u32);
         let thickness = world.materials[world.material_of(index(source)) as usize].thickness.max(0.0);
-        t <= world.clearance + if within { thickness } else { 0.0 }
+        t <= world.coincidence_tolerance + if within { thickness } else { 0.0 }
     }
 
     /// Does a ray go on through a face as if that were not there: through a hole, or one that it has been through?
     fn goes_on(&self, world: &World, packet: &Packet, ray: usize, (t, primitive): (f64, u32)) -> bool {
-        let (origin, dir) = packet.ways::<f64>(ray);
+        let (origin, dir) = packet.lines::<f64>(ray);
         self.leaves_pane(world, packet, ray, (t, primitive)) || world.is_hole(primitive as usize, origin + dir * t)
     }
 
@@ -441,7 +441,7 @@ impl Paths {
         if before == OUTSIDE || is_clear || self.left[ray] == AT_ONE_EDGE {
             return false;
         }
-        let (origin, dir) = packet.ways::<f64>(ray);
+        let (origin, dir) = packet.lines::<f64>(ray);
         let Some(primitive) = media.way_out(before, origin, dir) else { return false };
         (packet.t[ray], packet.primitive[ray]) = (0.0, f64::from(primitive));
         self.left[ray] += 1;
@@ -460,8 +460,8 @@ impl Paths {
         let world = media.world();
         let (t, primitive, before) =
             (packet.t[ray], index(packet.primitive[ray]) as u32, index(self.before[ray]) as u32);
-        let (origin, dir) = packet.ways::<f64>(ray);
-        let solid = world.solid_of(primitive as usize);
+        let (origin, dir) = packet.lines::<f64>(ray);
+        let solid = world.interior_of(primitive as usize);
         if solid == NO_SOLID {
             (self.after[ray], self.outer[ray]) = (self.before[ray], 1.0);
             if !self.meets(world, packet, ray, primitive, t) {
@@ -486,7 +486,7 @@ impl Paths {
         }
         let mut place = Place { after: before, up_to: t, face: (t, primitive), enters };
         if world.solids[solid as usize].touches {
-            if let Some(opaque) = self.look_around(media, packet, ray, &mut place) {
+            if let Some(opaque) = self.gather_coincident(media, packet, ray, &mut place) {
                 // What is opaque is seen, and nothing else in its place, but through its holes.
                 (packet.t[ray], packet.primitive[ray]) = (opaque.0, f64::from(opaque.1));
                 (self.after[ray], self.outer[ray]) = (self.before[ray], 1.0);
@@ -496,7 +496,7 @@ impl Paths {
             place.after = media.cross(before, primitive, origin, dir, t);
         }
         let Place { after, up_to, face, enters } = place;
-        let is_clear = t > self.clear[ray].max(self.since[ray] + world.clearance);
+        let is_clear = t > self.clear[ray].max(self.since[ray] + world.coincidence_tolerance);
         if after == before && !enters && is_clear && !media.contains(before, solid) {
             // Along the rim of a solid a ray meets a way out and a way in, in one place and in any order; and a face that it sees
             // edge on may look either way.
@@ -536,7 +536,7 @@ impl Paths {
     /// Crosses all faces in one place, in the order of their ids, so that a rounding does not decide which was entered last. The
     /// face that counts is the one into the medium behind the place, or else the one out of the medium before it. Returns an
     /// opaque surface there, if there is one, perhaps one that is only partly there.
-    fn look_around(
+    fn gather_coincident(
         &mut self,
         media: &mut Media<'_>,
         packet: &Packet,
@@ -566,13 +566,13 @@ impl Paths {
         }
         self.crossings.retain(|&(t, primitive)| {
             let starts = f64::from(primitive) == source && !world.shape(primitive as usize).is_round();
-            let leads_out = media.contains(before, world.solid_of(primitive as usize));
+            let leads_out = media.contains(before, world.interior_of(primitive as usize));
             !starts && (leads_out || leaving.meets(world, primitive, t))
         });
         if self.crossings.len() > 1 {
             // Along the rim of a solid there is a way in and a way out in one place, which is neither.
             let enters = |&(t, primitive): &(f64, u32)| {
-                let solid = world.solid_of(primitive as usize);
+                let solid = world.interior_of(primitive as usize);
                 (solid, solid != NO_SOLID && world.enters(primitive as usize, solid, origin, dir, t))
             };
             let ways: Vec<_> = self.crossings.iter().map(enters).collect();
@@ -587,19 +587,19 @@ impl Paths {
         self.crossings.retain(|face| crossed(face));
         let beside = |primitive: u32, solid: u32| {
             let primitive = primitive as usize;
-            solid != NO_SOLID && (world.solid_of(primitive) == solid || world.front_of(primitive) == solid)
+            solid != NO_SOLID && (world.interior_of(primitive) == solid || world.exterior_of(primitive) == solid)
         };
         let of = |solid: u32| self.crossings.iter().rev().find(|&&(_, primitive)| beside(primitive, solid));
         if let Some(&(t, primitive)) = of(media.top(place.after)).or_else(|| of(media.top(before))) {
             place.face = (t, primitive);
-            place.enters = world.enters(primitive as usize, world.solid_of(primitive as usize), origin, dir, t);
+            place.enters = world.enters(primitive as usize, world.interior_of(primitive as usize), origin, dir, t);
         }
         None
     }
 
     /// What a ray meets at exactly the distance of something that it goes on through: the tree has told only the first that is there.
     fn next_in_place(&mut self, world: &World, packet: &Packet, ray: usize) -> Option<u32> {
-        let ((origin, dir), t, first) = (packet.ways::<f64>(ray), packet.t[ray], index(packet.primitive[ray]) as u32);
+        let ((origin, dir), t, first) = (packet.lines::<f64>(ray), packet.t[ray], index(packet.primitive[ray]) as u32);
         let mut crossings = std::mem::take(&mut self.crossings);
         crossings.clear();
         world.tree.crossings(origin, dir, [t, t], &mut crossings);
@@ -615,11 +615,11 @@ impl Paths {
 
     /// The farthest face of a solid in the place of the hit, if there are ways in among them.
     fn rim(&mut self, world: &World, packet: &Packet, ray: usize, solid: u32) -> Option<f64> {
-        let ((origin, dir), t) = (packet.ways::<f64>(ray), packet.t[ray]);
+        let ((origin, dir), t) = (packet.lines::<f64>(ray), packet.t[ray]);
         let off = until_clear(world, world.geometric_normal(index(packet.primitive[ray]), origin + dir * t).dot(dir));
         self.crossings.clear();
         world.tree.crossings(origin, dir, [t - off, t + off], &mut self.crossings);
-        self.crossings.retain(|&(_, primitive)| world.solid_of(primitive as usize) == solid);
+        self.crossings.retain(|&(_, primitive)| world.interior_of(primitive as usize) == solid);
         let way_in = |&(t, primitive): &(f64, u32)| world.enters(primitive as usize, solid, origin, dir, t);
         self.crossings.iter().any(way_in).then(|| self.crossings.iter().fold(t, |up_to, &(t, _)| up_to.max(t)))
     }

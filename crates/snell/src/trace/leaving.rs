@@ -13,7 +13,7 @@
 //!              ╲                       │          lies on the obstacle, only if the ray goes to its other side.
 //! ```
 //!
-//! "Within" is [`World::clearance`](crate::world::World), what a hit may be off. Everything farther away blocks light.
+//! "Within" is [`World::coincidence_tolerance`](crate::world::World), what a hit may be off. Everything farther away blocks light.
 //!
 //! And what is in the way of a ray that goes back, to a light or from a mirror, is asked from a place a little [`back`] on the
 //! way on which the surface was reached: there it is surely on the right side of whatever else is there. The direction stays that of
@@ -27,7 +27,7 @@ use crate::world::World;
 /// How far a ray goes that leaves a face, at an angle of this cosine to its normal, until it is clear of its plane.
 #[inline(always)]
 pub(super) fn until_clear<L: Lanes>(world: &World, cos: L) -> L {
-    L::splat(world.clearance) / cos.max(-cos)
+    L::splat(world.coincidence_tolerance) / cos.max(-cos)
 }
 
 /// How far back on the way of length `t` to a surface a place is that is surely in front of it, by more than a hit may be off. In a
@@ -35,7 +35,7 @@ pub(super) fn until_clear<L: Lanes>(world: &World, cos: L) -> L {
 #[inline(always)]
 pub(super) fn back<L: Lanes>(world: &World, t: L) -> L {
     // Spheres have no edges.
-    let far = if world.primitive_count() > world.spheres.len() { 4.0 * world.clearance } else { 0.0 };
+    let far = if world.primitive_count() > world.spheres.len() { 4.0 * world.coincidence_tolerance } else { 0.0 };
     L::splat(far).min(t * L::splat(0.5))
 }
 
@@ -44,7 +44,7 @@ pub(super) fn back<L: Lanes>(world: &World, t: L) -> L {
 /// it, and nothing else is: the ray that was met here has come that way.
 #[inline(always)]
 pub(super) fn through<L: Lanes>(world: &World, cos: L, t: L) -> [L; 2] {
-    let off = until_clear(world, cos).min(L::splat(SLANTED * world.clearance));
+    let off = until_clear(world, cos).min(L::splat(SLANTED * world.coincidence_tolerance));
     let back = (L::splat(4.0) * off).min(t * L::splat(0.5));
     [back, back + off]
 }
@@ -54,7 +54,7 @@ const SLANTED: f64 = 2048.0;
 
 /// Faces that are farther from each other along a ray are never in one place.
 pub(super) fn together_at_most(world: &World) -> f64 {
-    2.0 * SLANTED * world.clearance
+    2.0 * SLANTED * world.coincidence_tolerance
 }
 
 /// Could two faces that a ray meets be in one place? Each is met as far from where it is as a hit may be off its plane, over the cosine
@@ -62,10 +62,10 @@ pub(super) fn together_at_most(world: &World) -> f64 {
 pub(super) fn are_in_one_place(world: &World, (origin, dir): (Vec3, Vec3), a: (f64, u32), b: (f64, u32)) -> bool {
     let off = |(t, primitive): (f64, u32)| {
         let cos = world.geometric_normal(primitive as usize, origin + dir * t).dot(dir);
-        until_clear(world, cos).min(SLANTED * world.clearance)
+        until_clear(world, cos).min(SLANTED * world.coincidence_tolerance)
     };
     let gap = (b.0 - a.0).abs();
-    gap <= world.clearance || (gap <= together_at_most(world) && gap <= off(a) + off(b))
+    gap <= world.coincidence_tolerance || (gap <= together_at_most(world) && gap <= off(a) + off(b))
 }
 
 /// A ray that leaves a surface, or the eye.
@@ -98,12 +98,12 @@ impl Leaving {
         }
         let (corners, n) = (world.corners(primitive as usize), self.normal(world));
         let up = if n.dot(self.dir) < 0.0 { -n } else { n };
-        if corners.iter().all(|&corner| up.dot(corner - self.origin) <= world.clearance) {
+        if corners.iter().all(|&corner| up.dot(corner - self.origin) <= world.coincidence_tolerance) {
             return false;
         }
         let other = world.geometric_normal(primitive as usize, self.origin);
         // Four roundings: below that it is not known on which side the ray starts.
-        if other.dot(self.origin - corners[0]).abs() > world.clearance * 0.125 {
+        if other.dot(self.origin - corners[0]).abs() > world.coincidence_tolerance * 0.125 {
             return t > 0.0;
         }
         (other.dot(self.dir) > 0.0) != (other.dot(self.wo) > 0.0)
@@ -112,7 +112,7 @@ impl Leaving {
     /// Does anything up to `distance` through which no light goes really stand in its way, where it is not yet clear?
     pub fn is_blocked(&self, world: &World, distance: f64, shadows: Shadows) -> bool {
         let (mut crossings, end) = (Vec::new(), self.clear.min(distance));
-        world.tree.crossings(self.origin, self.dir, [-world.behind, end], &mut crossings);
+        world.tree.crossings(self.origin, self.dir, [-world.exit_tolerance, end], &mut crossings);
         crossings
             .into_iter()
             .any(|(t, primitive)| world.blocks_light(primitive, shadows) && self.meets(world, primitive, t))

@@ -78,11 +78,11 @@ impl<'a> Media<'a> {
                 *(if enters { in_ } else { out }) = true;
             };
             for &(t, primitive) in place {
-                let solid = self.world.solid_of(primitive as usize);
+                let solid = self.world.interior_of(primitive as usize);
                 if solid != NO_SOLID {
                     let enters = self.world.enters(primitive as usize, solid, point, dir, t);
                     met(solid, enters);
-                    let front = self.world.front_of(primitive as usize);
+                    let front = self.world.exterior_of(primitive as usize);
                     if front != NO_SOLID {
                         met(front, !enters);
                     }
@@ -112,7 +112,7 @@ impl<'a> Media<'a> {
     /// Across a primitive, if it is a face through which a ray in this set can go: one that leads out of a solid of the set, or
     /// into one that is not in it.
     pub fn cross(&mut self, set: u32, primitive: u32, origin: Vec3, dir: Vec3, t: f64) -> u32 {
-        let solid = self.world.solid_of(primitive as usize);
+        let solid = self.world.interior_of(primitive as usize);
         if solid == NO_SOLID {
             return set;
         }
@@ -120,7 +120,7 @@ impl<'a> Media<'a> {
         if enters == self.contains(set, solid) {
             return set;
         }
-        let (after, front) = (self.across(set, solid), self.world.front_of(primitive as usize));
+        let (after, front) = (self.across(set, solid), self.world.exterior_of(primitive as usize));
         // What is in front of an interface is left on the way in, and entered on the way out.
         if front != NO_SOLID && enters == self.contains(after, front) { self.across(after, front) } else { after }
     }
@@ -131,7 +131,7 @@ impl<'a> Media<'a> {
         let (world, mut faces) = (self.world, Vec::new());
         world.tree.near(origin, &mut faces);
         let leads_out = |primitive: u32| {
-            let [behind, front] = [world.solid_of(primitive as usize), world.front_of(primitive as usize)];
+            let [behind, front] = [world.interior_of(primitive as usize), world.exterior_of(primitive as usize)];
             let enters = behind != NO_SOLID && world.enters(primitive as usize, behind, origin, dir, 0.0);
             self.contains(set, if enters { front } else { behind }) && !(enters && self.contains(set, behind))
         };
@@ -139,7 +139,7 @@ impl<'a> Media<'a> {
             .into_iter()
             .filter(|&face| leads_out(face))
             .map(|face| (world.shape(face as usize).distance(origin), face));
-        let near = distances.filter(|&(distance, _)| distance <= world.clearance);
+        let near = distances.filter(|&(distance, _)| distance <= world.coincidence_tolerance);
         near.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))).map(|(_, face)| face)
     }
 
@@ -180,7 +180,7 @@ impl<'a> Media<'a> {
         let world = self.world;
         let mut crossings = std::mem::take(&mut self.crossings);
         crossings.clear();
-        world.tree.crossings(way.origin, way.dir, [-world.behind, distance], &mut crossings);
+        world.tree.crossings(way.origin, way.dir, [-world.exit_tolerance, distance], &mut crossings);
         let (mut light, mut since) = (Rgb::gray(1.0), 0.0);
         // The interface before, and the index in front of the stack of parallel ones that it belongs to.
         let mut last: Option<((usize, Vec3), f64)> = None;
@@ -189,7 +189,7 @@ impl<'a> Media<'a> {
             let (t, first) = place[0];
             let (mut next, mut entered, mut pane) = (set, None, false);
             for &(t, primitive) in place {
-                let solid = world.solid_of(primitive as usize);
+                let solid = world.interior_of(primitive as usize);
                 let meets = way.meets(world, primitive, t);
                 if solid == NO_SOLID {
                     let point = way.origin + way.dir * t;
@@ -200,7 +200,7 @@ impl<'a> Media<'a> {
                     let is_pane = world.is_thin(primitive as usize) && !world.is_opaque_at(primitive as usize, point);
                     let again = is_pane && std::mem::replace(&mut pane, true);
                     if meets && t < distance && !again {
-                        light = light * self.through_surface(set, primitive as usize, way, t);
+                        light = light * self.transmitted_by_surface(set, primitive as usize, way, t);
                     }
                     continue;
                 }
@@ -237,7 +237,7 @@ impl<'a> Media<'a> {
     }
 
     /// What a surface that no solid has lets through: a pane something, others what is not there of them.
-    fn through_surface(&self, set: u32, primitive: usize, way: &Leaving, t: f64) -> Rgb {
+    fn transmitted_by_surface(&self, set: u32, primitive: usize, way: &Leaving, t: f64) -> Rgb {
         let (world, point) = (self.world, way.origin + way.dir * t);
         let material = &world.materials[world.material_of(primitive) as usize];
         if !material.is_pane() {

@@ -161,7 +161,7 @@ fn between<P: Propagation>(
     let (origin, clear) = P::shadow_start(hit, wi);
     let ray = Leaving { origin, dir: wi, source: hit.primitive(), clear, wo: hit.wo() };
     let (mut crossings, tinted) = (Vec::new(), shadows == Shadows::Tinted);
-    world.tree.crossings(origin, wi, [-world.behind, distance], &mut crossings);
+    world.tree.crossings(origin, wi, [-world.exit_tolerance, distance], &mut crossings);
     crossings.retain(|&crossing| crossing.0 < distance && P::is_in_the_way(world, &ray, crossing, tinted));
     let blocks = |&(t, primitive): &(f64, u32)| world.blocks_light_at(primitive, origin + wi * t, shadows);
     let end = crossings.iter().position(blocks).map_or(crossings.len(), |at| at + 1);

@@ -163,7 +163,7 @@ impl ShadowRays {
             for start in (0..count).step_by(L::WIDTH) {
                 let ShadowRay { origin, dir, distance, source, clear_at, .. } = self.rays.rows::<L>(first + start);
                 // A wall may be met a little behind the start, in the corner of a room.
-                let t_min = if P::TWO_SIDED { L::splat(-world.behind) } else { clear_at };
+                let t_min = if P::TWO_SIDED { L::splat(-world.exit_tolerance) } else { clear_at };
                 scenery.packet.set(start, origin, dir, t_min, distance, source, shear);
             }
             let mut blocked = world.tree.intersect::<L, true>(scenery.packet, u64::MAX >> (PACKET - count));

@@ -13,7 +13,7 @@ struct Lamp {
 }
 
 impl World {
-    /// Warns of each light whose distance from a surface is within [`clearance`](Self::clearance), in which hits may be off.
+    /// Warns of each light whose distance from a surface is within [`coincidence_tolerance`](Self::coincidence_tolerance), in which hits may be off.
     ///
     /// Looks at the box of each triangle.
     pub(super) fn find_lights_on_surfaces(&mut self, scene: &Scene, parts: &Parts) {
@@ -25,7 +25,7 @@ impl World {
         if lamps.is_empty() {
             return;
         }
-        let (clearance, mut first) = (self.clearance, self.spheres.len() as u32);
+        let (clearance, mut first) = (self.coincidence_tolerance, self.spheres.len() as u32);
         for (id, sphere) in (0..).zip(&self.spheres).filter(|(_, sphere)| sphere.radius > 0.0) {
             for lamp in &mut lamps {
                 lamp.offer(((lamp.at - sphere.center).length() - sphere.radius).abs(), id, clearance);

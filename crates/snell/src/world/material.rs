@@ -83,7 +83,7 @@ pub(super) fn compile(scene: &Scene, bands: &[Band], has_alpha: &[bool]) -> (Vec
             sigma_a: material.absorption(),
             thickness: material.thickness.filter(|_| lets_through).unwrap_or(-1.0),
             priority: material.priority,
-            tints: if material.dyed { 1.0 } else { 0.0 },
+            tints: if material.tinted_transmission { 1.0 } else { 0.0 },
             spectrum,
             pattern: pattern.map_or(NONE, |pattern| pattern as u32),
             has_holes,

@@ -64,7 +64,7 @@ impl Sides {
     fn of(&self, face: usize, first_solid: u32) -> [u32; 2] {
         match self {
             Self::None => [NO_SOLID; 2],
-            Self::Solids(solids) => match solids.solid_of[face] {
+            Self::Solids(solids) => match solids.interior_of[face] {
                 NO_SOLID => [NO_SOLID; 2],
                 solid => [first_solid + solid, NO_SOLID],
             },
@@ -170,8 +170,8 @@ impl World {
                 [NO_SOLID; 2]
             };
             let row = surfaces.material_of.len() - 1;
-            put_sparse(&mut surfaces.solid_of, row, behind, NO_SOLID);
-            put_sparse(&mut surfaces.front_of, row, front, NO_SOLID);
+            put_sparse(&mut surfaces.interior_of, row, behind, NO_SOLID);
+            put_sparse(&mut surfaces.exterior_of, row, front, NO_SOLID);
             let normals = corner_normals.as_ref().map(|normals| turned(normals[f], first_corner));
             let at = normals.map_or(FLAT, |_| surfaces.corner_normals.len() as u32);
             surfaces.corner_normals_of.push(at);

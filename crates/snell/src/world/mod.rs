@@ -81,10 +81,10 @@ pub struct World {
     /// No ray is longer before it hits something: the diagonal of the box around everything, the starts of camera rays included.
     pub(crate) reach: f64,
     /// How far a computed hit may be off the plane of its face, in scene units (`docs/tolerances.md`).
-    pub(crate) clearance: f64,
+    pub(crate) coincidence_tolerance: f64,
     /// How far behind its start a ray may still meet something: half of what the boxes of the tree are larger than what is in
     /// them, so that no way down the tree can hide it.
-    pub(crate) behind: f64,
+    pub(crate) exit_tolerance: f64,
     /// Is no triangle smooth?
     all_flat: bool,
     /// The tree, with the triangles in its leaves and the trees of the models.
@@ -134,8 +134,8 @@ impl World {
             has_alpha: has_alpha.contains(&true),
             background: Background::new(scene.background, scene.sky.as_ref()).ok_or_else(|| unread("sky"))?,
             reach: 0.0,
-            clearance: 0.0,
-            behind: 0.0,
+            coincidence_tolerance: 0.0,
+            exit_tolerance: 0.0,
             all_flat: true,
             tree: Bvh::default(),
         };

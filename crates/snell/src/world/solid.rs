@@ -47,7 +47,7 @@ pub(crate) struct Medium {
 pub(super) struct MeshSolids {
     pub solids: Vec<Solid>,
     /// For each face its solid.
-    pub solid_of: Vec<u32>,
+    pub interior_of: Vec<u32>,
 }
 
 impl MeshSolids {
@@ -86,8 +86,8 @@ impl MeshSolids {
             }
         }
         // A face without area belongs to no component, and is never hit.
-        let solid_of = report.component_of.iter().map(|&c| number_of.get(c as usize).copied().unwrap_or(NO_SOLID));
-        Ok(Self { solid_of: solid_of.collect(), solids })
+        let interior_of = report.component_of.iter().map(|&c| number_of.get(c as usize).copied().unwrap_or(NO_SOLID));
+        Ok(Self { interior_of: interior_of.collect(), solids })
     }
 }
 
@@ -167,7 +167,7 @@ impl World {
         let mut boxes: Vec<Bounds> = self.solids.iter().map(|solid| solid.bounds).collect();
         for object in &self.objects {
             let mut opaque = (object.first as usize..(object.first + object.count) as usize)
-                .filter(|&id| self.solid_of(id) == NO_SOLID);
+                .filter(|&id| self.interior_of(id) == NO_SOLID);
             if object.first as usize >= shapes.count() {
                 let instance = instances.iter().find(|i| i.first == object.first);
                 boxes.extend(instance.filter(|_| opaque.next().is_some()).map(|i| i.bounds));
@@ -175,7 +175,7 @@ impl World {
                 boxes.extend(opaque.map(|id| shapes.bounds(id)).reduce(Bounds::union));
             }
         }
-        let room = Vec3::new(self.clearance, self.clearance, self.clearance);
+        let room = Vec3::new(self.coincidence_tolerance, self.coincidence_tolerance, self.coincidence_tolerance);
         let too_many = self.solids.len().saturating_mul(boxes.len()) > COMPARED * COMPARED;
         let touches = |number: usize| {
             let grown = Bounds { min: boxes[number].min - room, max: boxes[number].max + room };
@@ -189,8 +189,8 @@ impl World {
 
     /// The solid whose surface a primitive is, or [`NO_SOLID`].
     #[inline(always)]
-    pub(crate) fn solid_of(&self, primitive: usize) -> u32 {
-        match self.surfaces.solid_of.get(primitive) {
+    pub(crate) fn interior_of(&self, primitive: usize) -> u32 {
+        match self.surfaces.interior_of.get(primitive) {
             Some(&solid) => solid,
             None => self.solid_in_model(primitive),
         }
@@ -202,7 +202,7 @@ impl World {
             return;
         }
         for primitive in 0..self.primitive_count() as u32 {
-            for solid in [self.solid_of(primitive as usize), self.front_of(primitive as usize)] {
+            for solid in [self.interior_of(primitive as usize), self.exterior_of(primitive as usize)] {
                 if let Some(solid) = self.solids.get_mut(solid as usize)
                     && solid.primitive == NO_PRIMITIVE
                 {
@@ -214,13 +214,13 @@ impl World {
 
     /// The solid in front of a primitive, if that is an interface between two; or [`NO_SOLID`].
     #[inline(always)]
-    pub(crate) fn front_of(&self, primitive: usize) -> u32 {
-        self.surfaces.front_of.get(primitive).copied().unwrap_or(NO_SOLID)
+    pub(crate) fn exterior_of(&self, primitive: usize) -> u32 {
+        self.surfaces.exterior_of.get(primitive).copied().unwrap_or(NO_SOLID)
     }
 
     fn solid_in_model(&self, primitive: usize) -> u32 {
         let Some((placement, id)) = self.placement(primitive) else { return NO_SOLID };
-        match self.models[placement.model].solid_of.get(id) {
+        match self.models[placement.model].interior_of.get(id) {
             Some(&solid) if solid != NO_SOLID => placement.first_solid + solid,
             _ => NO_SOLID,
         }

@@ -59,8 +59,8 @@ impl World {
         let material = material_ids.get(sphere.material.as_str()).copied().unwrap_or(0);
         self.surfaces.material_of.push(material);
         if self.refracts(material) {
-            self.surfaces.solid_of.resize(id, NO_SOLID);
-            self.surfaces.solid_of.push(self.solids.len() as u32);
+            self.surfaces.interior_of.resize(id, NO_SOLID);
+            self.surfaces.interior_of.push(self.solids.len() as u32);
             let (medium, bounds) = (self.medium_of(material), placed.bounds());
             self.solids.push(Solid {
                 medium,

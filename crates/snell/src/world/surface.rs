@@ -21,9 +21,9 @@ pub(super) const FLAT: u32 = u32::MAX;
 pub(super) struct Surfaces {
     pub material_of: Vec<u32>,
     /// The solid whose surface each is; `NO_SOLID`, or no entry at all, where nothing goes through.
-    pub solid_of: Vec<u32>,
+    pub interior_of: Vec<u32>,
     /// The solid in front of each, where it is an interface between two, as above.
-    pub front_of: Vec<u32>,
+    pub exterior_of: Vec<u32>,
     /// Texture coordinates at the corners of the triangles that have a texture, and for each primitive where they are; `FLAT`, or
     /// no entry at all, where it has none.
     pub corner_uvs: Vec<[[f64; 2]; 3]>,
@@ -34,7 +34,7 @@ pub(super) struct Surfaces {
     pub corner_normals_of: Vec<u32>,
 }
 
-/// So many times [`World::clearance`] from an edge of a triangle is near it, whatever the angle at which a ray meets it.
+/// So many times [`World::coincidence_tolerance`] from an edge of a triangle is near it, whatever the angle at which a ray meets it.
 const RIM: f64 = 2048.0;
 
 /// From which side rays meet spheres.
@@ -72,8 +72,8 @@ pub(super) struct Placement {
 impl Surfaces {
     pub fn memory(&self) -> usize {
         size_of_val(self.material_of.as_slice())
-            + size_of_val(self.solid_of.as_slice())
-            + size_of_val(self.front_of.as_slice())
+            + size_of_val(self.interior_of.as_slice())
+            + size_of_val(self.exterior_of.as_slice())
             + size_of_val(self.corner_uvs.as_slice())
             + size_of_val(self.corner_uvs_of.as_slice())
             + size_of_val(self.corner_normals.as_slice())
@@ -121,7 +121,7 @@ impl World {
     /// Does no light at all go through, with this kind of shadows?
     pub(crate) fn blocks_light(&self, primitive: u32, shadows: Shadows) -> bool {
         let primitive = primitive as usize;
-        shadows != Shadows::Tinted || (self.solid_of(primitive) == NO_SOLID && !self.is_thin(primitive))
+        shadows != Shadows::Tinted || (self.interior_of(primitive) == NO_SOLID && !self.is_thin(primitive))
     }
 
     /// The same at one of its points: what has holes may be whole there.
@@ -131,13 +131,13 @@ impl World {
 
     /// Is it a surface of no solid, and lets nothing through at this point?
     pub(crate) fn is_opaque_at(&self, primitive: usize, point: Vec3) -> bool {
-        self.solid_of(primitive) == NO_SOLID && self.lets_through(primitive, point) == Rgb::gray(0.0)
+        self.interior_of(primitive) == NO_SOLID && self.lets_through(primitive, point) == Rgb::gray(0.0)
     }
 
     /// What of the light on the outer side of a surface does not go through.
     fn opacity(&self, primitive: usize, point: Vec3) -> Rgb {
         let material = &self.materials[self.material_of(primitive) as usize];
-        let is_clear = self.solid_of(primitive) != NO_SOLID || material.is_pane();
+        let is_clear = self.interior_of(primitive) != NO_SOLID || material.is_pane();
         let whole = if is_clear { material.ko } else { Rgb::gray(1.0) };
         whole * self.coverage(primitive, point)
     }
@@ -172,8 +172,8 @@ impl World {
 
     /// The face of the same object that looks at a ray and is in the place where the ray has met the back of an opaque one: along the
     /// outline of a body both are there, and rounding alone says which is nearer.
-    pub(crate) fn front_of_outline(&self, primitive: usize, point: Vec3, dir: Vec3) -> Option<u32> {
-        if self.solid_of(primitive) != NO_SOLID {
+    pub(crate) fn front_of_silhouette(&self, primitive: usize, point: Vec3, dir: Vec3) -> Option<u32> {
+        if self.interior_of(primitive) != NO_SOLID {
             return None;
         }
         let (object, mut faces) = (self.object_of(primitive as u32), Vec::new());
@@ -182,7 +182,7 @@ impl World {
             let shape = self.shape(face as usize);
             self.object_of(face) == object
                 && shape.normal(point).dot(dir) < 0.0
-                && shape.distance(point) <= self.clearance
+                && shape.distance(point) <= self.coincidence_tolerance
         });
         fronts.min()
     }
@@ -191,7 +191,7 @@ impl World {
     pub(crate) fn is_edge_on(&self, primitive: usize, dir: Vec3) -> bool {
         let shape = self.shape(primitive);
         let bounds = shape.bounds();
-        !shape.is_round() && shape.normal(bounds.min).dot(dir).abs() * bounds.diagonal() <= self.clearance
+        !shape.is_round() && shape.normal(bounds.min).dot(dir).abs() * bounds.diagonal() <= self.coincidence_tolerance
     }
 
     /// A primitive, in the space of the world.
@@ -229,14 +229,14 @@ impl World {
     /// By which angle the normal of a triangle may be off.
     ///
     /// Corners are known to single precision of the size of their solid, which is what model files hold, and to
-    /// [`clearance`](Self::clearance). Where all of them are off by `d`, a triangle of longest edge `l` and height `h` upon it
+    /// [`coincidence_tolerance`](Self::coincidence_tolerance). Where all of them are off by `d`, a triangle of longest edge `l` and height `h` upon it
     /// turns by up to `2d/h` about that edge and `2d/l` across; as `h` is at most `√3/2·l`, by less than `3d/h`.
     fn tilt(&self, primitive: usize, [a, b, c]: [Vec3; 3]) -> f64 {
         const SINGLE: f64 = 1.0 / (1u64 << 24) as f64;
-        let size = self.solids.get(self.solid_of(primitive) as usize).map_or(0.0, |solid| solid.bounds.diagonal());
+        let size = self.solids.get(self.interior_of(primitive) as usize).map_or(0.0, |solid| solid.bounds.diagonal());
         let longest = (b - a).length().max((c - b).length()).max((a - c).length());
         let height = area_vector([a, b, c]).length() / longest;
-        3.0 * (SINGLE * size + self.clearance) / height
+        3.0 * (SINGLE * size + self.coincidence_tolerance) / height
     }
 
     fn material_in_model(&self, primitive: usize) -> u32 {
@@ -271,7 +271,9 @@ impl World {
     /// Is it a surface of no solid and no pane, with places where it is not there?
     pub(crate) fn is_cut_out(&self, primitive: usize) -> bool {
         let material = self.material_of(primitive);
-        self.has_holes(material) && !self.materials[material as usize].is_pane() && self.solid_of(primitive) == NO_SOLID
+        self.has_holes(material)
+            && !self.materials[material as usize].is_pane()
+            && self.interior_of(primitive) == NO_SOLID
     }
 
     /// Is nothing there at this point?
@@ -337,7 +339,7 @@ impl World {
             let (mut rim, mut near_one) = (behind & !spheres, L::Mask::from_bits(0));
             if rim.any() {
                 let c = Vec3::<L>::from_fn(|lane| corners[lane][2]);
-                let far = RIM * self.clearance;
+                let far = RIM * self.coincidence_tolerance;
                 for [a, b] in [[a, b], [b, c], [c, a]] {
                     let (along, off) = (b - a, (b - a).cross(point - a));
                     near_one = near_one | off.dot(off).le(along.dot(along) * L::splat(far * far));

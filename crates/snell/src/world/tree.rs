@@ -35,7 +35,7 @@ impl World {
         }
         let (reach, farthest) = (everything.diagonal(), everything.farthest());
         self.reach = reach;
-        self.clearance = MARGIN * (reach + farthest);
+        self.coincidence_tolerance = MARGIN * (reach + farthest);
         // In the space of a model rays come from everywhere that any of its instances sees, and start a little behind.
         let mut seen: Vec<Bounds> = parts.models.iter().map(|m| Bounds::of(m.vertices.iter().copied())).collect();
         let mut norms = vec![0.0; parts.models.len()];
@@ -45,7 +45,7 @@ impl World {
             let instance = Instance::new(*model, map, first as u32, bounds, reach, farthest);
             let flat = || problem(*which, format!("an instance of `{name}` is scaled by 0"));
             let instance = instance.ok_or_else(flat)?;
-            self.clearance = self.clearance.max(instance.off);
+            self.coincidence_tolerance = self.coincidence_tolerance.max(instance.off);
             norms[*model] = instance.to_model.norm().max(norms[*model]);
             seen[*model] = seen[*model].union(Bounds::of(everything.corners().map(|c| instance.to_model.apply(c))));
             let count = self.models[*model].material_of.len();
@@ -68,16 +68,16 @@ impl World {
                 return Err(problem(*which, "more than 4 billion triangles in all places together".to_owned()));
             }
         }
-        self.behind = 0.5 * self.clearance;
+        self.exit_tolerance = 0.5 * self.coincidence_tolerance;
         let models = parts.models.iter().zip(seen.iter().zip(norms)).map(|(model, (seen, norm))| {
             let shapes = Shapes { triangles: model.list(), ..Shapes::default() };
-            let margin = (MARGIN * (seen.diagonal() + seen.farthest())).max(norm * self.clearance);
+            let margin = (MARGIN * (seen.diagonal() + seen.farthest())).max(norm * self.coincidence_tolerance);
             Bvh::build(&shapes, vec![], margin, quality, threads)
         });
         let models = models.collect();
         let touching = self.touching(&shapes, &instances);
         let shapes = Shapes { instances: &instances, ..shapes };
-        self.tree = Bvh::build(&shapes, models, self.clearance, quality, threads);
+        self.tree = Bvh::build(&shapes, models, self.coincidence_tolerance, quality, threads);
         for (solid, touches) in self.solids.iter_mut().zip(touching) {
             solid.touches = touches;
         }

@@ -152,7 +152,7 @@ impl Packet {
 
     /// Origins and directions of the rays of one group of lanes.
     #[inline(always)]
-    pub fn ways<L: Lanes>(&self, start: usize) -> (Vec3<L>, Vec3<L>) {
+    pub fn lines<L: Lanes>(&self, start: usize) -> (Vec3<L>, Vec3<L>) {
         (Self::vector(&self.origin, start, [0, 1, 2]), Self::vector(&self.dir, start, [0, 1, 2]))
     }
 
@@ -165,7 +165,7 @@ impl Packet {
     #[inline(always)]
     pub(super) fn rays<S: Shape, L: Lanes>(&self, start: usize, octant: &Octant) -> Ray<L> {
         if !S::SHEARED {
-            let (origin, dir) = self.ways(start);
+            let (origin, dir) = self.lines(start);
             return Ray::unsheared(origin, dir);
         }
         let axes = octant.axes;

@@ -161,7 +161,7 @@ fn only_whitted(scene: &Scene, found: &mut Findings) {
         unused(at("attenuation_color"), m.attenuation_color.is_some());
         unused(at("sigma_a"), m.sigma_a.is_some());
         unused(at("priority"), m.priority != 0);
-        unused(at("dyed"), m.dyed);
+        unused(at("tinted_transmission"), m.tinted_transmission);
         unused(at("abbe"), m.abbe.is_some());
         unused(at("thickness"), m.thickness.is_some());
     }
