@@ -31,6 +31,7 @@
 //! # }
 //! ```
 
+mod color;
 pub mod explain;
 pub mod film;
 pub mod geometry;

@@ -2,7 +2,7 @@
 
 #![allow(unsafe_code, reason = "two blocks, each of which says why it is sound")]
 
-use crate::film::Rgb;
+use crate::color::Rgb;
 use bytemuck::Zeroable;
 
 /// So many zeros, or `None` where there is not so much memory.

@@ -1,7 +1,8 @@
 //! Why a whole picture is black.
 
 use super::{Explanation, Names, explain};
-use crate::film::{Film, Rgb};
+use crate::color::Rgb;
+use crate::film::Film;
 use crate::scene::{Warning, WarningCode};
 
 /// So many columns and rows of pixels are looked at.

@@ -1,8 +1,9 @@
 //! How much a branch that was not followed could still have added.
 
-use crate::film::Rgb;
-use crate::integrate::{Integrator, Most, WithIntegrator, size, with_integrator};
+use crate::color::Rgb;
+use crate::integrate::{WithIntegrator, size, with_integrator};
 use crate::scene;
+use crate::trace::{Integrator, Most};
 use crate::world::{CompiledMaterial, World};
 
 /// So many further levels are considered.

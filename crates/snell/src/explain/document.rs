@@ -4,7 +4,7 @@
 
 use super::angles::{Angles, angles};
 use super::{Names, bound, sentence};
-use crate::film::Rgb;
+use crate::color::Rgb;
 use crate::film::transfer::Transfer;
 use crate::render::trace_pixel;
 use crate::scene::{Integrator, Scene};

@@ -3,7 +3,7 @@
 use super::angles::angles;
 use super::path::SKY;
 use super::{How, Leg, Names, Path, by_path};
-use crate::film::Rgb;
+use crate::color::Rgb;
 use crate::trace::{PixelTrace, RayKind, RayTree};
 
 /// Parts that are named; the rest is summed up.

@@ -1,7 +1,8 @@
 //! All pixels of a picture by their paths: one layer for each, and where an object is seen.
 
 use super::{Names, Path};
-use crate::film::{Crop, Rgb};
+use crate::color::Rgb;
+use crate::film::Crop;
 use crate::render::{Options, PixelTracer, Progress, Settings};
 use crate::scene::Scene;
 use crate::threads;

@@ -1,9 +1,8 @@
 //! Pictures: colours, the film that a render fills, and the curve to 8 and 16 bit.
 
-mod color;
 pub mod transfer;
 
-pub use color::Rgb;
+pub use crate::color::Rgb;
 
 use crate::memory;
 use std::fmt;

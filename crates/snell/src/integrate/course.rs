@@ -6,10 +6,10 @@
 //! | `course2020` | `a` | `a ← kr·a` | `a ← (1 − kr)·a` |
 
 use super::lecture::{exit_ray, mirror_ray, refracts};
-use super::{Integrator, Most, size};
-use crate::film::Rgb;
+use super::size;
+use crate::color::Rgb;
 use crate::lanes::{Lanes, record};
-use crate::trace::{Batch, Children, FirstSurface, RayKind, Settings};
+use crate::trace::{Batch, Children, FirstSurface, Integrator, Most, RayKind, Settings};
 use crate::world::CompiledMaterial;
 
 record! {

@@ -1,9 +1,8 @@
 //! No light at all: only what the rays of the camera meet.
 
-use super::{Integrator, Most};
-use crate::film::Rgb;
+use crate::color::Rgb;
 use crate::lanes::{Lanes, Mask};
-use crate::trace::{Batch, Children, Propagation, Settings};
+use crate::trace::{Batch, Children, Integrator, Most, Propagation, Settings};
 use crate::world::CompiledMaterial;
 use std::marker::PhantomData;
 

@@ -10,12 +10,12 @@
 //! The parent applies `a` and the child applies it again, as in the lecture's own code: the attenuations compound, and bounce n
 //! weighs `kr^(n(n+1)/2)` instead of `kr^n`.
 
-use super::{Integrator, Most, size};
-use crate::film::Rgb;
+use super::size;
+use crate::color::Rgb;
 use crate::geometry::Vec3;
 use crate::lanes::{Lanes, Mask, record};
 use crate::optics::snell;
-use crate::trace::{Batch, Children, FirstSurface, Outgoing, RayKind, Settings};
+use crate::trace::{Batch, Children, FirstSurface, Integrator, Most, Outgoing, RayKind, Settings};
 use crate::world::CompiledMaterial;
 
 record! {

@@ -2,10 +2,11 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-use super::*;
-use crate::lanes::{Kernel, LaneWidth, Mask, dispatch, record};
-use crate::scene::{Camera, Material, Render, Scene, Sphere};
-use crate::trace::{RayKind, Tile, Tracer};
+use crate::color::Rgb;
+use crate::lanes::{Kernel, LaneWidth, Lanes, Mask, dispatch, record};
+use crate::scene::{self, Camera, Material, Render, Scene, Sphere};
+use crate::trace::{Batch, Children, FirstSurface, Integrator, Most, RayKind, Settings, Tile, Tracer};
+use crate::world::{CompiledMaterial, World};
 
 record! {
     /// What a ray carries.

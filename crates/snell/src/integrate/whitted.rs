@@ -16,8 +16,8 @@
 //! At its first dispersive interface a white ray splits: a refracted ray for each band of light, with the band's index and its
 //! share of white. What is reflected goes one way for all, with `R` = Σ share·R of the bands, and stays white.
 
-use super::{Integrator, Most, size};
-use crate::film::Rgb;
+use super::size;
+use crate::color::Rgb;
 use crate::geometry::Vec3;
 use crate::lanes::{Lanes, Mask, index, record};
 use crate::optics::fresnel::fresnel_dielectric;
@@ -25,7 +25,7 @@ use crate::optics::snell::{reflect, refract};
 use crate::trace::interfaces::{InterfaceState, Interfaces, Travel, media_of, mirrored, onward, through_holes};
 use crate::trace::media::{Media, WHITE};
 use crate::trace::pane::{Pane, Passage};
-use crate::trace::{Batch, Children, RayKind, Settings};
+use crate::trace::{Batch, Children, Integrator, Most, RayKind, Settings};
 use crate::world::{Background, CompiledMaterial, World};
 
 record! {

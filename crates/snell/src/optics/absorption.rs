@@ -4,7 +4,7 @@
 //! d'optique", 1729). People say instead which colour is left of white after which distance (as glTF's
 //! `KHR_materials_volume` does).
 
-use crate::film::Rgb;
+use crate::color::Rgb;
 use crate::lanes::{Lanes, exp};
 
 /// Absorption per scene unit of a medium that leaves `attenuation_color` of white light after `attenuation_distance`:

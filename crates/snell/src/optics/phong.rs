@@ -1,6 +1,6 @@
 //! Phong's local colour (Phong 1975), as the lecture writes it.
 
-use crate::film::Rgb;
+use crate::color::Rgb;
 use crate::geometry::Vec3;
 use crate::lanes::{Lanes, Mask, pow};
 use crate::optics::snell::reflect;

@@ -1,6 +1,7 @@
 //! Sums of samples of a picture, which merge to the bits of the whole.
 
-use crate::film::{Crop, Film, FilmTooLarge, Rgb};
+use crate::color::Rgb;
+use crate::film::{Crop, Film, FilmTooLarge};
 use crate::trace::{Block, PairwiseSum, Statistics, Twice, add_to, mean};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;

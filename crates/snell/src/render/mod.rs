@@ -10,9 +10,9 @@ pub use accumulator::{Accumulator, MergeError};
 pub use renderer::Renderer;
 
 use crate::film::{Crop, Film, FilmTooLarge};
-use crate::integrate::{Integrator, WithIntegrator, with_first_hit, with_integrator};
+use crate::integrate::{WithIntegrator, with_first_hit, with_integrator};
 use crate::scene;
-use crate::trace::{PixelTrace, RayTree, Recorder, Statistics, Tile, Tracer};
+use crate::trace::{Integrator, PixelTrace, RayTree, Recorder, Statistics, Tile, Tracer};
 use crate::world::World;
 use renderer::Schedule;
 use std::fmt;

@@ -3,11 +3,12 @@
 use super::accumulator::Accumulator;
 use super::spread::Spread;
 use super::{Options, Passes, Progress, RenderError};
-use crate::film::{Crop, Film, Rgb};
-use crate::integrate::{Integrator, WithIntegrator, with_integrator};
+use crate::color::Rgb;
+use crate::film::{Crop, Film};
+use crate::integrate::{WithIntegrator, with_integrator};
 use crate::lanes::{Kernel, Lanes, dispatch};
 use crate::threads;
-use crate::trace::{Block, Settings, Statistics, Tile, TracedTile, Tracer, mean};
+use crate::trace::{Block, Integrator, Settings, Statistics, Tile, TracedTile, Tracer, mean};
 use crate::world::World;
 use std::collections::VecDeque;
 use std::ops::Range;

@@ -1,6 +1,6 @@
 //! Lights.
 
-use crate::film::Rgb;
+use crate::color::Rgb;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

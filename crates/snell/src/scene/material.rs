@@ -1,7 +1,7 @@
 //! Materials: the lecture's coefficients, and what the physical model adds to them.
 
 use super::one;
-use crate::film::Rgb;
+use crate::color::Rgb;
 use crate::optics::absorption;
 use crate::optics::dispersion::{Dispersion, Formula, VISIBLE_NM};
 use crate::optics::glass::{self, UnknownGlass};

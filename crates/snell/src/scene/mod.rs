@@ -33,7 +33,7 @@ pub use warning::{Warning, WarningCode};
 
 pub use crate::film::transfer::{Rounding, Transfer};
 
-use crate::film::Rgb;
+use crate::color::Rgb;
 use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -1,6 +1,6 @@
 //! What is seen where nothing is hit.
 
-use crate::film::Rgb;
+use crate::color::Rgb;
 use crate::texture::Image;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

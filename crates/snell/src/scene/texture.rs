@@ -1,6 +1,6 @@
 //! Patterns on surfaces.
 
-use crate::film::Rgb;
+use crate::color::Rgb;
 use crate::texture::Image;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

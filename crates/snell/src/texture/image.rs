@@ -1,6 +1,6 @@
 //! A picture as a texture, looked up between its texels.
 
-use crate::film::Rgb;
+use crate::color::Rgb;
 use std::ops::{Add, Mul};
 
 /// A picture in linear light, kept as `f32`: 8192 x 4096 texels take 400 megabytes. All arithmetic is in `f64`.

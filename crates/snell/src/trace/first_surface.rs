@@ -7,7 +7,7 @@ use super::media::OUTSIDE;
 use super::propagation::Propagation;
 use super::queue::Generation;
 use super::statistics::Statistics;
-use crate::film::Rgb;
+use crate::color::Rgb;
 use crate::geometry::Vec3;
 use crate::geometry::bvh::{Nearest, PACKET, Packet};
 use crate::lanes::{Lanes, Mask};

@@ -3,6 +3,7 @@
 use super::camera::CameraRays;
 use super::carried::CarriedByAll;
 use super::hits::Hits;
+use super::integrator::Integrator;
 use super::observer::{Observer, StateOf};
 use super::pairwise::{Block, PairwiseSum};
 use super::propagation::Propagation;
@@ -11,9 +12,8 @@ use super::shading::{LocalColors, Scenery, ShadowRays};
 use super::statistics::{Statistics, lost_units};
 use super::tree::Ended;
 use super::{Settings, Tile};
-use crate::film::Rgb;
+use crate::color::Rgb;
 use crate::geometry::bvh::Packet;
-use crate::integrate::Integrator;
 use crate::lanes::{Kernel, Lanes, Mask};
 use crate::world::World;
 use std::ops::Range;

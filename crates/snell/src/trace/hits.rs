@@ -4,7 +4,7 @@ use super::carried::Carried;
 use super::leaving::together_at_most;
 use super::propagation::Propagation;
 use super::queue::{Generation, Outgoing, Ray};
-use crate::film::Rgb;
+use crate::color::Rgb;
 use crate::geometry::Vec3;
 use crate::geometry::bvh::FewSpheres;
 use crate::lanes::{Columns, Lanes, MAX_WIDTH, Mask, Number, Record, Row, Table, index, table};

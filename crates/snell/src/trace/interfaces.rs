@@ -15,7 +15,7 @@ use super::media::{Media, OUTSIDE, WHITE};
 use super::propagation::Propagation;
 use super::queue::Generation;
 use super::statistics::{Overlap, Statistics};
-use crate::film::Rgb;
+use crate::color::Rgb;
 use crate::geometry::Vec3;
 use crate::geometry::bvh::{PACKET, Packet};
 use crate::lanes::{Kernel, Lanes, Mask, Number, index, table};

@@ -6,7 +6,7 @@
 
 use super::leaving::{Leaving, are_in_one_place};
 use super::pane::Pane;
-use crate::film::Rgb;
+use crate::color::Rgb;
 use crate::geometry::{Bounds, Vec3};
 use crate::optics::absorption::transmittance_rgb;
 use crate::optics::fresnel::fresnel_dielectric;

@@ -1,12 +1,12 @@
 //! Who looks on while rays are traced: nobody for plain rendering, the recorder for explanations.
 
 use super::hits::Hits;
+use super::integrator::Integrator;
 use super::propagation::Propagation;
 use super::queue::{Generation, RayQueue};
 use super::shading::ShadowRays;
 use super::tree::Ended;
-use crate::film::Rgb;
-use crate::integrate::Integrator;
+use crate::color::Rgb;
 use crate::scene::Shadows;
 use crate::world::{LightSource, World};
 

@@ -1,6 +1,6 @@
 //! Thin faces: one face is a whole pane (see [`thin`](crate::optics::thin)).
 
-use crate::film::Rgb;
+use crate::color::Rgb;
 use crate::geometry::Vec3;
 use crate::lanes::Lanes;
 use crate::optics::absorption::transmittance_rgb;

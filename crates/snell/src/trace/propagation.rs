@@ -4,7 +4,7 @@ use super::hits::{Batch, Hits};
 use super::leaving::Leaving;
 use super::queue::Generation;
 use super::statistics::Statistics;
-use crate::film::Rgb;
+use crate::color::Rgb;
 use crate::geometry::Vec3;
 use crate::geometry::bvh::Packet;
 use crate::lanes::{Lanes, Row, Table};

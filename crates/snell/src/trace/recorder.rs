@@ -1,15 +1,15 @@
 //! Writes down the rays of a pixel while the engine traces them: there is no second tracer.
 
 use super::hits::{Batch, Hits};
+use super::integrator::Integrator;
 use super::leaving::Leaving;
 use super::observer::{Observer, StateOf};
 use super::propagation::Propagation;
 use super::queue::{Generation, RayQueue};
 use super::shading::{ShadowRays, faces, light_on};
 use super::tree::{Ended, Hit, Lit, Node, RayTree};
-use crate::film::Rgb;
+use crate::color::Rgb;
 use crate::geometry::Vec3;
-use crate::integrate::Integrator;
 use crate::lanes::index;
 use crate::scene::Shadows;
 use crate::world::{LightSource, World};

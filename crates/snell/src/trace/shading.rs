@@ -5,7 +5,7 @@ use super::leaving::Leaving;
 use super::media::OUTSIDE;
 use super::observer::Observer;
 use super::propagation::Propagation;
-use crate::film::Rgb;
+use crate::color::Rgb;
 use crate::geometry::Vec3;
 use crate::geometry::bvh::{Nearest, PACKET, Packet};
 use crate::lanes::{Columns, Kernel, Lanes, Mask, Number, Table, index, table};

@@ -1,6 +1,6 @@
 //! What a render did: rays by kind and depth, and the light that was cut off.
 
-use crate::film::Rgb;
+use crate::color::Rgb;
 use crate::geometry::Vec3;
 use serde::{Deserialize, Serialize};
 use std::cmp::Ordering;

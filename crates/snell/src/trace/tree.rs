@@ -2,7 +2,7 @@
 
 use super::pairwise::pairwise_sum;
 use super::queue::RayKind;
-use crate::film::Rgb;
+use crate::color::Rgb;
 use crate::geometry::Vec3;
 
 /// One ray, and what it added.

@@ -1,6 +1,6 @@
 //! Lights as the kernels see them.
 
-use crate::film::Rgb;
+use crate::color::Rgb;
 use crate::geometry::Vec3;
 use crate::lanes::Lanes;
 use crate::lanes::elementary::sin_cos_degrees;

@@ -1,6 +1,6 @@
 //! Materials as the kernels see them: plain numbers.
 
-use crate::film::Rgb;
+use crate::color::Rgb;
 use crate::optics::dispersion::LINE_D_NM;
 use crate::optics::spectrum::Band;
 use crate::scene::{Material, Scene};

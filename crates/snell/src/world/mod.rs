@@ -23,7 +23,7 @@ pub(crate) use surface::Side;
 use surface::{FLAT, Placement, Surfaces};
 pub(crate) use texture::{Background, Pattern};
 
-use crate::film::Rgb;
+use crate::color::Rgb;
 use crate::geometry::bvh::{Bvh, Quality, TreeStatistics};
 use crate::geometry::{Affine, Bounds, Sphere};
 use crate::optics::spectrum::{self, Band};

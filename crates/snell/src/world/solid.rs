@@ -2,7 +2,7 @@
 
 use super::material::NONE;
 use super::{NO_PRIMITIVE, World};
-use crate::film::Rgb;
+use crate::color::Rgb;
 use crate::geometry::bvh::{Instance, Shapes};
 use crate::geometry::solid::{Component, EdgePlace, Found, Orientation, Report, Verdict, structure};
 use crate::geometry::{Affine, Bounds, TriangleMesh, Vec3};

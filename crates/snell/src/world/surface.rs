@@ -1,7 +1,7 @@
 //! What surface is at a hit: its normal, its material.
 
 use super::{NO_SOLID, World};
-use crate::film::Rgb;
+use crate::color::Rgb;
 use crate::geometry::area::area_vector;
 use crate::geometry::bvh::Bvh;
 use crate::geometry::ray::{Heading, axes, main_axis};

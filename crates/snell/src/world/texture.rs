@@ -2,7 +2,7 @@
 
 use super::World;
 use super::material::NONE;
-use crate::film::Rgb;
+use crate::color::Rgb;
 use crate::geometry::{Affine, Vec3};
 use crate::scene::{Problem, Problems, Scene, Sky, Step, Texture};
 use crate::texture::{Image, checker, latlong_uv, sphere_uv};

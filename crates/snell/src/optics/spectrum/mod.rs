@@ -3,7 +3,7 @@
 mod cie;
 
 use super::dispersion::{LINE_D_NM, VISIBLE_NM};
-use crate::film::Rgb;
+use crate::color::Rgb;
 
 /// Linear sRGB of the tristimulus values X, Y, Z: the primaries and the white of IEC 61966-2-1 (ITU-R BT.709), solved for
 /// 16 digits.

@@ -1,7 +1,7 @@
 //! Checks of materials and of their textures.
 
 use super::{Findings, MAX_BANDS, Step};
-use crate::film::Rgb;
+use crate::color::Rgb;
 use crate::optics::dispersion::{LINE_D_NM, NoIndex};
 use crate::optics::spectrum;
 use crate::scene::{Integrator, Material, Scene, Shadows, WarningCode};

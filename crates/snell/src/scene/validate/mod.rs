@@ -12,7 +12,7 @@ mod view;
 pub use name::is_unprintable;
 
 use super::{Integrator, Problem, Problems, Scene, Shadows, Step, Warning, WarningCode};
-use crate::film::Rgb;
+use crate::color::Rgb;
 
 /// Numbers beyond this are refused: their squares must fit into the `f32` boxes of the tree.
 pub const LARGEST_NUMBER: f64 = 1e15;

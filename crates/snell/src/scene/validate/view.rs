@@ -134,7 +134,7 @@ fn spot(light: &Light, i: usize, found: &mut Findings) {
 pub(super) fn sky(scene: &Scene, found: &mut Findings) {
     let Some(sky) = &scene.sky else { return };
     let at = |key: &str| place!["sky", key];
-    if scene.background != crate::film::Rgb::gray(0.0) {
+    if scene.background != crate::color::Rgb::gray(0.0) {
         let message = "where nothing is, there is a background or a sky, not both";
         found.problem(place!["background"], message, "remove one of them");
     }
