@@ -1,7 +1,6 @@
 //! All places where one ray crosses something, within a range of distances: slow, for the few rays that need it.
 
 use super::Bvh;
-use super::build::MOST_WAITING;
 use super::node::{Child, Kind, Node, WIDTH, plane};
 use super::primitives::{INSTANCES, RunOf};
 use crate::geometry::Vec3;
@@ -93,18 +92,17 @@ impl Bvh {
         if self.nodes.is_empty() {
             return;
         }
-        let mut waiting = [Child::ROOT; 1 + MOST_WAITING];
-        let mut count = 1;
-        while count > 0 {
-            count -= 1;
-            let child = waiting[count];
+        // Few boxes wait at a time: room for as many as could would take longer to clear than the search itself.
+        let mut waiting = Vec::with_capacity(8 * WIDTH);
+        waiting.push(Child::ROOT);
+        while let Some(child) = waiting.pop() {
             match child.kind() {
                 Kind::Node(number) => {
                     let node = &self.nodes[number as usize];
                     let mut met = line.meets(node);
                     while met != 0 {
-                        waiting[count] = node.child[met.trailing_zeros() as usize];
-                        (count, met) = (count + 1, met & (met - 1));
+                        waiting.push(node.child[met.trailing_zeros() as usize]);
+                        met &= met - 1;
                     }
                 }
                 Kind::Block(_) => self.collect_in_leaf(child, line, first_id, found),
