@@ -49,8 +49,8 @@ impl Reporter {
             // What is over at once needs no bar, and the first guesses at the time left are wild.
             Self::Bar(bar) if bar.elapsed() < BAR_DELAY => {}
             Self::Bar(bar) => {
-                bar.set_length(progress.total_samples);
-                bar.set_position(progress.samples);
+                bar.set_length(progress.total_pixels);
+                bar.set_position(progress.pixels);
                 let elapsed = bar.elapsed();
                 let rate = short(progress.rays as f64 / elapsed.as_secs_f64().max(1e-9));
                 bar.set_message(format!("{rate} rays/s  {} left", HumanDuration(left(elapsed, &progress))));
@@ -59,10 +59,10 @@ impl Reporter {
                 let Ok(mut last) = last.lock() else { return };
                 if last.is_none_or(|at| at.elapsed() >= JSON_INTERVAL) {
                     *last = Some(Instant::now());
-                    let Progress { samples, total_samples, rays } = progress;
+                    let Progress { pixels, total_pixels, rays } = progress;
                     let elapsed = started.elapsed();
                     let event = json!({
-                        "event": "progress", "samples": samples, "total_samples": total_samples, "rays": rays,
+                        "event": "progress", "pixels": pixels, "total_pixels": total_pixels, "rays": rays,
                         "seconds": elapsed.as_secs_f64(), "left": left(elapsed, &progress).as_secs_f64(),
                     });
                     tell(&event.to_string());
@@ -78,10 +78,10 @@ impl Reporter {
     }
 }
 
-/// How long the rest takes, if its samples are like those that are finished; the renderer spreads these over the picture.
+/// How long the rest takes, if its pixels are like those that are finished; the renderer spreads these over the picture.
 fn left(elapsed: Duration, progress: &Progress) -> Duration {
-    let Progress { samples, total_samples, .. } = *progress;
-    let rest = total_samples.saturating_sub(samples) as f64 / samples.max(1) as f64;
+    let Progress { pixels, total_pixels, .. } = *progress;
+    let rest = total_pixels.saturating_sub(pixels) as f64 / pixels.max(1) as f64;
     Duration::try_from_secs_f64(elapsed.as_secs_f64() * rest).unwrap_or(Duration::MAX)
 }
 

@@ -20,15 +20,15 @@ pub fn watched<T: Send>(
     work: impl FnOnce(&Options<'_>) -> T + Send,
 ) -> (T, Option<PyErr>) {
     let cancel = AtomicBool::new(false);
-    let [samples, total, rays] = [AtomicU64::new(0), AtomicU64::new(0), AtomicU64::new(0)];
+    let [pixels, total, rays] = [AtomicU64::new(0), AtomicU64::new(0), AtomicU64::new(0)];
     let count = |done: Progress| {
-        total.store(done.total_samples, Ordering::Relaxed);
-        samples.fetch_max(done.samples, Ordering::Relaxed);
+        total.store(done.total_pixels, Ordering::Relaxed);
+        pixels.fetch_max(done.pixels, Ordering::Relaxed);
         rays.fetch_max(done.rays, Ordering::Relaxed);
     };
     let options = Options { threads, crop, progress: Some(&count), cancel: Some(&cancel), ..Options::default() };
     let tell = |py: Python<'_>| {
-        let seen = (samples.load(Ordering::Relaxed), total.load(Ordering::Relaxed), rays.load(Ordering::Relaxed));
+        let seen = (pixels.load(Ordering::Relaxed), total.load(Ordering::Relaxed), rays.load(Ordering::Relaxed));
         // Nothing is finished yet.
         let progress = progress.filter(|_| seen.1 > 0);
         progress.map_or(Ok(()), |progress| progress.call1(py, seen).map(drop))

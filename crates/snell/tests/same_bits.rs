@@ -214,7 +214,7 @@ fn cancelling_keeps_what_is_done() {
     let world = World::new(&scene).unwrap();
     let whole = picture(&scene, &Options::default());
     let cancel = AtomicBool::new(false);
-    let progress = |p: snell::render::Progress| cancel.store(p.samples >= 2048, Ordering::Relaxed);
+    let progress = |p: snell::render::Progress| cancel.store(p.pixels >= 2048, Ordering::Relaxed);
     let options = Options { threads: 1, progress: Some(&progress), cancel: Some(&cancel), ..Options::default() };
     // Into new memory, and into that of another picture, which must not shine through.
     let mut again = whole.clone();

@@ -42,17 +42,17 @@ pub(super) fn rows<'a, T: Send>(
 ) -> Option<Vec<T>> {
     let [width, height] = world.camera.size;
     let crop = options.crop.unwrap_or(Crop { x: 0, y: 0, width, height });
-    let total_samples = u64::from(crop.width) * u64::from(crop.height);
-    let [samples, rays] = [AtomicU64::new(0), AtomicU64::new(0)];
+    let total_pixels = u64::from(crop.width) * u64::from(crop.height);
+    let [pixels, rays] = [AtomicU64::new(0), AtomicU64::new(0)];
     let cancelled = || options.cancel.is_some_and(|cancel| cancel.load(Ordering::Relaxed));
     let row = |y: u32| {
         let mut tracer = tracer()?;
         let columns = (crop.x..crop.x.saturating_add(crop.width)).take_while(|_| !cancelled());
         let row: Vec<T> = columns.filter_map(|x| tracer.trace(x, y)).map(|trace| of(&trace)).collect();
         if let Some(progress) = options.progress {
-            let samples = samples.fetch_add(row.len() as u64, Ordering::Relaxed) + row.len() as u64;
+            let pixels = pixels.fetch_add(row.len() as u64, Ordering::Relaxed) + row.len() as u64;
             let rays = rays.fetch_add(tracer.rays(), Ordering::Relaxed) + tracer.rays();
-            progress(Progress { samples, total_samples, rays });
+            progress(Progress { pixels, total_pixels, rays });
         }
         Some(row)
     };

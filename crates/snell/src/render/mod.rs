@@ -83,10 +83,10 @@ impl fmt::Debug for Options<'_> {
 /// How far a render has come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Progress {
-    /// Samples of pixels that are finished.
-    pub samples: u64,
-    /// All that are asked for: pixels times samples per pixel.
-    pub total_samples: u64,
+    /// Pixels finished; of a pixel that has some of its samples only these count.
+    pub pixels: u64,
+    /// Pixels in all.
+    pub total_pixels: u64,
     /// Rays of all kinds traced for them.
     pub rays: u64,
 }

@@ -511,11 +511,13 @@ impl Shared<'_, '_> {
 
     fn report(&self, samples: u64, rays: u64) {
         let [done_samples, done_rays] = &self.done;
-        let SharedSchedule { options, total, before, .. } = &self.schedule;
+        let SharedSchedule { options, crop, total, before, .. } = &self.schedule;
         let samples = before[0] + done_samples.fetch_add(samples, Ordering::Relaxed) + samples;
         let rays = before[1] + done_rays.fetch_add(rays, Ordering::Relaxed) + rays;
         if let Some(progress) = options.progress {
-            progress(Progress { samples, total_samples: *total, rays });
+            let total_pixels = u64::from(crop.width) * u64::from(crop.height);
+            let pixels = samples / (total / total_pixels);
+            progress(Progress { pixels, total_pixels, rays });
         }
     }
 }
