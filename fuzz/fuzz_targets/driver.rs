@@ -2,7 +2,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use snell::render::{Settings, Options, render};
+use snell::render::{Options, Settings, render};
 use snell::world::World;
 use snell_formats::driver::{Dialect, parse};
 use snell_formats::text::decode;
@@ -21,7 +21,8 @@ fuzz_target!(|bytes: &[u8]| {
                 driver.scene.render.size = [3, 2];
                 driver.scene.render.max_depth = driver.scene.render.max_depth.min(5);
                 if let Ok(world) = World::new(&driver.scene) {
-                    render(&world, &Settings::of(&scene), &Options { threads: 1, ..Options::default() }).unwrap();
+                    render(&world, &Settings::of(&driver.scene), &Options { threads: 1, ..Options::default() })
+                        .unwrap();
                 }
             }
         }

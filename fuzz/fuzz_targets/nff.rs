@@ -2,7 +2,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use snell::render::{Settings, Options, render};
+use snell::render::{Options, Settings, render};
 use snell::world::World;
 use snell_formats::nff::parse;
 use snell_formats::text::decode;

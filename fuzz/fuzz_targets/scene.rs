@@ -3,7 +3,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use snell::render::{Settings, Options, render};
+use snell::render::{Options, Settings, render};
 use snell::world::World;
 use snell_formats::Source;
 use snell_formats::scene_file::{Syntax, parse, report, set, to_text};
