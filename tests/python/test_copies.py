@@ -174,3 +174,12 @@ def test_another_version_is_refused() -> None:
     state["ready"]["version"] = "0.0.1"
     with pytest.raises(snell.PictureError, match=r"pickled by Snell 0\.0\.1, and this is"):
         type(picture._native)(state)
+
+
+@pytest.mark.parametrize("array", ["numbers", "finished"])
+def test_a_film_that_is_cut_off_is_refused(array: str) -> None:
+    picture = snell.scenes["lecture/default"].render(width=8)
+    (state,) = picture._native.__getnewargs__()
+    state[array] = state[array][:-1]
+    with pytest.raises(snell.PictureError, match="expected 8 x 8 pixels"):
+        type(picture._native)(state)

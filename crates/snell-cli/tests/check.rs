@@ -4,8 +4,9 @@
 
 mod common;
 
-use common::{data, run, snell, stderr, stdout};
+use common::{run, snell, stderr, stdout};
 use serde_json::Value;
+use snell_test_scenes::real_files::data;
 use std::fs;
 use std::path::Path;
 

@@ -443,6 +443,8 @@ fn wrong_usage_ends_with_2() {
     }
     let near = snell(at, &["scenes", "--save", "lecture/defualt"]);
     assert!(stderr(&near).contains("did you mean `lecture/default`?"));
+    let long = snell(at, &["render", &"x".repeat(20_000)]);
+    assert!(long.status.code() == Some(3) && stderr(&long).len() < 1000, "{} bytes", stderr(&long).len());
     assert_eq!(snell(at, &["render", "lecture/defualt"]).status.code(), Some(3));
     assert_eq!(snell(at, &["render", "no.toml"]).status.code(), Some(3));
 }

@@ -4,7 +4,8 @@
 
 mod common;
 
-use common::{data, run, snell, stderr};
+use common::{run, snell, stderr};
+use snell_test_scenes::real_files::data;
 use std::path::{Path, PathBuf};
 
 #[test]

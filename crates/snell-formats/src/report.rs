@@ -109,7 +109,6 @@ impl fmt::Display for Report {
 
 impl std::error::Error for Report {}
 
-/// Where several things can be wrong, one of them.
 impl From<&Problem> for Report {
     /// Without its place, which is one in a scene and not yet one in a text.
     fn from(problem: &Problem) -> Self {
@@ -119,6 +118,7 @@ impl From<&Problem> for Report {
     }
 }
 
+/// Where several things can be wrong, one of them.
 impl From<Report> for Vec<Report> {
     fn from(report: Report) -> Self {
         vec![report]

@@ -6,7 +6,7 @@ use crate::pickle::ReadyState;
 use crate::watch::{unless_stopped, watched};
 use crate::world::Ready;
 use numpy::ndarray::{Array, ArrayView3, Dim, Dimension, ErrorKind, IntoDimension, ShapeError};
-use numpy::{PyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray3};
+use numpy::{PyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray3, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyKeyboardInterrupt, PyRuntimeError};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -229,6 +229,13 @@ impl NativePicture {
         let ready = Arc::new(ready.read(py)?);
         let mut film = Film::new(full_size.into(), Crop { x, y, width, height })
             .map_err(|error| raise(py, "PictureError", vec![(None, error.to_string(), None)]))?;
+        let (colors, marks) = (numbers.shape(), finished.len());
+        if colors != [height as usize, width as usize, 3] || marks != film.pixels.len() {
+            let message = format!(
+                "expected {width} x {height} pixels, read an array of {colors:?}, and for {marks} of them whether they are finished"
+            );
+            return Err(raise(py, "PictureError", vec![(Some("pickle".to_owned()), message, None)]));
+        }
         let numbers = numbers.readonly();
         for (pixel, color) in film.pixels.iter_mut().zip(numbers.as_array().rows()) {
             *pixel = Rgb::new(color[0], color[1], color[2]);

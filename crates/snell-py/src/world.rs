@@ -86,8 +86,7 @@ impl Ready {
     }
 }
 
-/// Compiles a scene. Here, and nowhere else, a world is made; and here belongs the choice to make it of the world that stands
-/// for a scene with other materials, lights or another camera.
+/// Compiles a scene: the only place where a world is made.
 fn compile(scene: &Scene) -> Result<World, Problems> {
     World::build(scene, Quality::default(), 0)
 }

@@ -23,7 +23,7 @@
 //!     spheres: vec![Sphere::new([0.0; 3], 1.0, "red")],
 //!     ..Scene::new(Render::new(Integrator::Lecture, [32, 32]), camera)
 //! };
-//! let world = snell::world::World::new(&scene).map_err(|problems| problems[0].to_string())?;
+//! let world = snell::world::World::new(&scene)?;
 //! let rendered = render(&world, &Settings::of(&scene), &Options::default())?;
 //! let center = rendered.film.pixels[16 * 32 + 16];
 //! assert!(center.r > 0.4 && center.g == 0.0, "{center:?}");

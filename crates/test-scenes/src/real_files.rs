@@ -6,17 +6,17 @@ use std::path::{Path, PathBuf};
 /// Models, drivers and pictures: `SNELL_DATA`, or `shared/data` beside the clone.
 pub fn data() -> Option<PathBuf> {
     let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
-    present(std::env::var_os("SNELL_DATA").map_or(beside, PathBuf::from))
+    present(&std::env::var_os("SNELL_DATA").map_or(beside, PathBuf::from))
 }
 
 /// Small inputs that went wrong once, in `shared/cases` beside the clone.
 pub fn cases() -> Option<PathBuf> {
-    present(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/cases"))
+    present(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/cases"))
 }
 
-fn present(folder: PathBuf) -> Option<PathBuf> {
+fn present(folder: &Path) -> Option<PathBuf> {
     if folder.is_dir() {
-        return Some(folder);
+        return folder.canonicalize().ok();
     }
     // Not by `eprintln!`, which the test harness hides where a test passes.
     let line = format!("SKIPPED: the real files are not there ({}); set SNELL_DATA\n", folder.display());

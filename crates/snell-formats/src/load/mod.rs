@@ -155,11 +155,11 @@ pub fn load(name: &str, options: &LoadOptions) -> Result<Loaded, Vec<Report>> {
                 Err(vec![no_file(path)])
             }
             Err(report) => {
-                let message = format!("there is no file and no built-in scene `{name}`");
                 let file = near_file(path).map(|near| format!("did you mean the file `{near}`?"));
-                let help: Vec<String> = file.into_iter().chain(report.help.clone()).collect();
-                let help = (!help.is_empty()).then(|| help.join(" "));
-                Err(vec![Report { message, help, ..report }])
+                let help: Vec<String> = file.into_iter().chain(report.help).collect();
+                let missing = Report::error(format!("there is no file and no built-in scene `{name}`"));
+                let missing = Report { remedy: report.remedy, ..missing };
+                Err(vec![if help.is_empty() { missing } else { missing.help(help.join(" ")) }])
             }
         };
     }

@@ -1,4 +1,4 @@
-//! Pictures: colours, the film that a render fills, and the curve to 8 and 16 bit.
+//! Pictures: the film that a render fills, and the curve to 8 and 16 bit.
 
 pub mod transfer;
 

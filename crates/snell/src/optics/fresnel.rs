@@ -31,7 +31,7 @@ pub fn fresnel_dielectric<L: Lanes>(cos_theta_i: L, eta: L) -> L {
     (rs + rp) * L::splat(0.5)
 }
 
-/// `[Rs, Rp]`: the same for light that swings across the plane of incidence, and in it.
+/// `[Rs, Rp]`: the same for light polarised perpendicular to the plane of incidence, and parallel to it.
 #[inline(always)]
 pub fn fresnel_polarized<L: Lanes>(cos_theta_i: L, eta: L) -> [L; 2] {
     let one = L::splat(1.0);
@@ -59,7 +59,7 @@ pub fn critical_angle(eta: f64) -> Option<f64> {
     (eta <= 1.0).then(|| libm::asin(eta))
 }
 
-/// At which angle, in radians, light that swings in the plane of incidence is not reflected (Brewster 1815).
+/// At which angle, in radians, light polarised parallel to the plane of incidence is not reflected (Brewster 1815).
 pub fn brewster_angle(eta: f64) -> f64 {
     libm::atan(eta)
 }

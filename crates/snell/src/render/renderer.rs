@@ -24,7 +24,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 /// # let scene = Scene::new(Render::new(Integrator::Lecture, [64, 64]), camera);
 /// use snell::render::{Options, Passes, Renderer, Settings};
 ///
-/// let world = snell::world::World::new(&scene).map_err(|problems| problems[0].to_string())?;
+/// let world = snell::world::World::new(&scene)?;
 /// let settings = Settings::of(&scene);
 /// let options = Options { passes: Passes::CoarseToFine { coarsest: 8 }, ..Options::default() };
 /// let mut renderer = Renderer::new(&world, &settings, &options)?;

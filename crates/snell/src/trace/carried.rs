@@ -22,6 +22,7 @@ pub(crate) struct CarriedByAll {
 
 impl CarriedByAll {
     pub fn new<T: Record>(row: &Row<T, f64>) -> Self {
+        const { assert!(T::COLUMNS <= MOST, "the model carries more numbers than `MOST`") };
         let mut columns = [0.0; MOST];
         T::to_columns(row, &mut columns[..T::COLUMNS]);
         Self { columns, used: T::COLUMNS }
@@ -43,6 +44,7 @@ impl Carried {
     /// Appends the lanes that the mask names, in lane order.
     #[inline(always)]
     pub fn push<L: Lanes, T: Record>(&mut self, mask: L::Mask, row: &Row<T, L>) {
+        const { assert!(T::COLUMNS <= MOST, "the model carries more numbers than `MOST`") };
         let mut columns = [L::splat(0.0); MOST];
         T::to_columns(row, &mut columns[..T::COLUMNS]);
         self.used = T::COLUMNS;

@@ -6,7 +6,7 @@
 //! out all that is near would let light through.
 //!
 //! ```text
-//!        convex                 concave           What a ray meets while it is within the clearance of the plane
+//!        convex                 concave           What a ray meets while it is within the tolerance of the plane
 //!       n↑   ↗ d                n↑  ↗ d │         of its face is looked at. It is a real obstacle only if
 //!   ─────┴──●╲                 ────┴──●┤          it rises above that plane, as the wall on the right does and
 //!    source   ╲ neighbour       source │ wall     the neighbour on the left does not; and where the place itself

@@ -13,7 +13,7 @@ struct Lamp {
 }
 
 impl World {
-    /// Warns of each light whose distance from a surface is within [`coincidence_tolerance`](Self::coincidence_tolerance), in which hits may be off.
+    /// Warns of each light on a surface, to within what a hit may be off ([`coincidence_tolerance`](Self::coincidence_tolerance)).
     ///
     /// Looks at the box of each triangle.
     pub(super) fn find_lights_on_surfaces(&mut self, scene: &Scene, parts: &Parts) {
@@ -25,20 +25,20 @@ impl World {
         if lamps.is_empty() {
             return;
         }
-        let (clearance, mut first) = (self.coincidence_tolerance, self.spheres.len() as u32);
+        let (tolerance, mut first) = (self.coincidence_tolerance, self.spheres.len() as u32);
         for (id, sphere) in (0..).zip(&self.spheres).filter(|(_, sphere)| sphere.radius > 0.0) {
             for lamp in &mut lamps {
-                lamp.offer(((lamp.at - sphere.center).length() - sphere.radius).abs(), id, clearance);
+                lamp.offer(((lamp.at - sphere.center).length() - sphere.radius).abs(), id, tolerance);
             }
         }
         let mut look_at = |triangles: &Triangles, map: Affine, bounds: Bounds| {
-            // A box of corners is larger than what is in it but for roundings, of which `clearance` has many.
-            if lamps.iter().any(|lamp| is_near(lamp.at, &bounds, 2.0 * clearance)) {
+            // The box of mapped corners holds all that is in it but for roundings, which are far smaller than the tolerance.
+            if lamps.iter().any(|lamp| is_near(lamp.at, &bounds, 2.0 * tolerance)) {
                 for (id, face) in (first..).zip(&triangles.faces) {
                     let corners = face.map(|v| map.apply(triangles.vertices[v as usize]));
                     let bounds = Bounds::of(corners);
-                    for lamp in lamps.iter_mut().filter(|lamp| is_near(lamp.at, &bounds, clearance)) {
-                        lamp.offer(triangle::distance(corners, lamp.at), id, clearance);
+                    for lamp in lamps.iter_mut().filter(|lamp| is_near(lamp.at, &bounds, tolerance)) {
+                        lamp.offer(triangle::distance(corners, lamp.at), id, tolerance);
                     }
                 }
             }
@@ -57,7 +57,7 @@ impl World {
             let name = scene.lights.get(lamp.number).and_then(|light| light.name.clone());
             let name = name.unwrap_or_else(|| format!("light {}", lamp.number + 1));
             let message = format!(
-                "`{name}` stands on the surface of `{}`: {distance:e} away, where hits are known to {clearance:.0e} only, so that \
+                "`{name}` stands on the surface of `{}`: {distance:e} away, where hits are known to {tolerance:.0e} only, so that \
                  the surface takes its light from some points by chance, which looks like speckles; move it away, by an amount \
                  that can be seen, to the side on which it is to shine",
                 object.name
@@ -70,8 +70,8 @@ impl World {
 
 impl Lamp {
     /// Takes note of a surface, if none nearer is known.
-    fn offer(&mut self, distance: f64, primitive: u32, clearance: f64) {
-        if distance <= clearance && self.nearest.is_none_or(|(nearest, _)| distance < nearest) {
+    fn offer(&mut self, distance: f64, primitive: u32, tolerance: f64) {
+        if distance <= tolerance && self.nearest.is_none_or(|(nearest, _)| distance < nearest) {
             self.nearest = Some((distance, primitive));
         }
     }

@@ -22,7 +22,7 @@ pub(crate) struct Solid {
     pub inward: bool,
     /// May it touch something else, so that a ray meets both in one place?
     pub touches: bool,
-    /// Is it no body, but all that interfaces say to be filled with this material?
+    /// For a medium between interfaces, which has no surface of its own: the number of its material.
     pub between_faces_of: Option<u32>,
     /// One of its primitives.
     pub primitive: u32,

@@ -81,14 +81,13 @@ fn nearest_of(nearest: &[&str]) -> String {
 mod tests {
     use super::*;
     use crate::optics::dispersion::{Formula, LINE_C_NM, LINE_D_NM, LINE_F_NM, VISIBLE_NM};
-    use std::io::Write;
-    use std::path::{Path, PathBuf};
+    use snell_test_scenes::real_files::data;
 
     fn lines(name: &str) -> [f64; 3] {
         [LINE_F_NM, LINE_D_NM, LINE_C_NM].map(|line| find(name).unwrap().dispersion.eta(line).unwrap())
     }
 
-    /// Figures computed by others from the same data (`shared/data/SOURCES.md`), six digits and two.
+    /// Figures that others computed from the same data, to six digits and two.
     #[test]
     fn indices_and_abbe_numbers_are_the_known_ones() {
         for (name, etas, abbe_number) in [
@@ -181,19 +180,6 @@ mod tests {
         }
     }
 
-    /// The real files: `SNELL_DATA`, or `shared/data` beside the clone.
-    fn data() -> Option<PathBuf> {
-        let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
-        let folder = std::env::var_os("SNELL_DATA").map_or(beside, PathBuf::from).join("glass");
-        if folder.is_dir() {
-            return Some(folder);
-        }
-        // Not by `eprintln!`, which the test harness hides where a test passes.
-        let line = format!("SKIPPED: the real files are not there ({}); set SNELL_DATA\n", folder.display());
-        std::io::stderr().write_all(line.as_bytes()).unwrap();
-        None
-    }
-
     /// The numbers behind a key of a `.yml` file, which is enough of that format here.
     fn numbers(yml: &str, key: &str) -> Option<Vec<f64>> {
         let line = yml.lines().find_map(|line| line.trim_start().strip_prefix(key)?.strip_prefix(':'))?;
@@ -202,7 +188,7 @@ mod tests {
 
     #[test]
     fn every_entry_has_the_numbers_of_its_file() {
-        let Some(folder) = data() else { return };
+        let Some(folder) = data().map(|data| data.join("glass")) else { return };
         for glass in CATALOGUE {
             let file = folder.join(format!("{}.yml", glass.page.replace('/', "_")));
             let yml = std::fs::read_to_string(&file).unwrap_or_else(|error| panic!("{}: {error}", file.display()));
