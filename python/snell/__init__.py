@@ -16,15 +16,15 @@ from .errors import OpticsError, PictureError, RenderError, SceneError, SnellErr
 from .movie.frames import Sweep
 from .notebook.interact import Interactive, interact
 from .notebook.view import View
-from .parts import Box, Camera, Globe, Lathe, Light, Material, Mesh, Plane, Render, Sky, Sphere, Texture
+from .parts import Box, Camera, Disc, Globe, Lathe, Light, Material, Mesh, Plane, Render, Sky, Sphere, Texture
 from .picture import Difference, Picture, Sightings
 from .scene import Scene, scenes
 from .sweep import sweep
 from .tree import Figure, Hit, LightThere, Local, Node, RayTree, Sample
 
 __all__ = [
-    "Box", "Camera", "Channels", "Difference", "Figure", "Globe", "Hit", "Interactive", "Lathe", "Light", "LightThere",
-    "Local", "Material", "Mesh", "Node", "OpticsError", "Picture", "PictureError", "Plane", "RayTree", "Render",
+    "Box", "Camera", "Channels", "Difference", "Disc", "Figure", "Globe", "Hit", "Interactive", "Lathe", "Light",
+    "LightThere", "Local", "Material", "Mesh", "Node", "OpticsError", "Picture", "PictureError", "Plane", "RayTree", "Render",
     "RenderError", "Sample", "Scene", "SceneError", "Sightings", "Sky", "SnellError", "SnellWarning", "Sphere", "Sweep",
     "Texture", "View", "__version__", "interact", "optics", "scenes", "sweep",
 ]  # fmt: skip

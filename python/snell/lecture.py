@@ -20,7 +20,7 @@ from copy import copy
 from typing import Any
 
 from .errors import SceneError
-from .parts import Box, Camera, Globe, Lathe, Light, Material, Mesh, Plane, Render, Sphere
+from .parts import Box, Camera, Disc, Globe, Lathe, Light, Material, Mesh, Plane, Render, Sphere
 from .picture import Picture
 from .scene import Scene
 
@@ -83,8 +83,8 @@ def _scene(variables: Mapping[str, Any]) -> Scene:
 
     objects = get("objs")
     objects = list(objects) if isinstance(objects, Iterable) else [objects]
-    if not all(isinstance(thing, Sphere | Mesh | Plane | Box | Lathe) for thing in objects):
-        raise SceneError([("objs", "expected globes, meshes, planes, boxes and lathes", None)])
+    if not all(isinstance(thing, Sphere | Mesh | Plane | Box | Disc | Lathe) for thing in objects):
+        raise SceneError([("objs", "expected globes, meshes, planes, boxes, discs and lathes", None)])
     return Scene(
         settings=Render("lecture", max_depth=variables.get("trace_depth", 6), transfer="linear", shadows="opaque"),
         camera=get(*_CAMERAS),
@@ -97,5 +97,6 @@ def _scene(variables: Mapping[str, Any]) -> Scene:
         meshes=[thing for thing in objects if isinstance(thing, Mesh)],
         planes=[thing for thing in objects if isinstance(thing, Plane)],
         boxes=[thing for thing in objects if isinstance(thing, Box)],
+        discs=[thing for thing in objects if isinstance(thing, Disc)],
         lathes=[thing for thing in objects if isinstance(thing, Lathe)],
     )

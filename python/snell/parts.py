@@ -383,6 +383,21 @@ class Box(Value):
 
 
 @dataclass(eq=False, repr=False)
+class Disc(Value):
+    """A disc of this radius around `center`; a `transform` that stretches it makes it an ellipse."""
+
+    center: Vector = (0.0, 0.0, 0.0)
+    normal: Vector = (0.0, 1.0, 0.0)
+    radius: float | None = None
+    material: int | str | None = None
+    name: str | None = field(default=None, kw_only=True)
+    inside: int | str | None = field(default=None, kw_only=True)
+    outside: int | str | None = field(default=None, kw_only=True)
+    transform: Steps = field(default=(), kw_only=True)
+    instances: Sequence[Steps] = field(default=(), kw_only=True)
+
+
+@dataclass(eq=False, repr=False)
 class Lathe(Value):
     """What turns around the y axis: a bottle, a lens, a pencil.
 

@@ -14,7 +14,7 @@ from . import _native
 from . import how as how_of
 from .errors import Finding, PictureError, SceneError, warn
 from .how import How, Settings
-from .parts import Box, Camera, Lathe, Light, Material, Mesh, Plane, Render, Sky, Sphere, Texture
+from .parts import Box, Camera, Disc, Lathe, Light, Material, Mesh, Plane, Render, Sky, Sphere, Texture
 from .picture import Picture, Sightings, no_pixel
 from .progress import watcher
 from .tree import RayTree
@@ -26,14 +26,15 @@ if TYPE_CHECKING:
     from .notebook.view import View
 
 _LISTS: Mapping[str, type[Value]] = {
-    "light": Light, "sphere": Sphere, "mesh": Mesh, "plane": Plane, "box": Box, "lathe": Lathe,
+    "light": Light, "sphere": Sphere, "mesh": Mesh, "plane": Plane, "box": Box, "disc": Disc,
+    "lathe": Lathe,
 }  # fmt: skip
 _TABLES: Mapping[str, type[Value]] = {"render": Render, "camera": Camera, "sky": Sky}
 _NAMED: Mapping[str, type[Value]] = {"material": Material, "texture": Texture}
 #: Keys of a file, and the fields that are called otherwise: of many things a file has one table each, a scene a list.
 _FIELDS = {
     "render": "settings", "light": "lights", "material": "materials", "texture": "textures", "sphere": "spheres",
-    "mesh": "meshes", "plane": "planes", "box": "boxes", "lathe": "lathes",
+    "mesh": "meshes", "plane": "planes", "box": "boxes", "disc": "discs", "lathe": "lathes",
 }  # fmt: skip
 _REMARKS = ("W202 lost-light", "W203 black-picture")  # told by the picture, which may be meant so
 
@@ -73,6 +74,8 @@ class Scene(Value):
         Rectangles.
     boxes : sequence of Box
         Boxes along the axes.
+    discs : sequence of Disc
+        Discs and ellipses.
     lathes : sequence of Lathe
         What turns around an axis.
     folder : str or path
@@ -109,6 +112,7 @@ class Scene(Value):
     meshes: Sequence[Mesh] = ()
     planes: Sequence[Plane] = ()
     boxes: Sequence[Box] = ()
+    discs: Sequence[Disc] = ()
     lathes: Sequence[Lathe] = ()
     folder: str | os.PathLike[str] = "."
     name: str = "scene"

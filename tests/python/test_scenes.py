@@ -152,6 +152,7 @@ def test_defaults_are_those_of_the_library(tmp_path: Path) -> None:
         'snell = 1\n[render]\nintegrator = "lecture"\nsize = [4, 4]\n'
         "[camera]\neye = [0, 0, 5]\nlook_at = [0, 0, 0]\nup = [0, 1, 0]\nfov = 40\n[material.m]\n"
         '[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\nmaterial = "m"\n[[plane]]\nsize = [1, 1]\nmaterial = "m"\n'
+        '[[disc]]\nradius = 1\nmaterial = "m"\n'
         '[[lathe]]\nprofile = [[0, 0], [1, 0], [0, 1]]\nmaterial = "m"\n[texture.t]\nchecker = [0, 1]\n'
         "[sky]\nhorizon = 1\n"
     )
@@ -161,6 +162,7 @@ def test_defaults_are_those_of_the_library(tmp_path: Path) -> None:
         materials={"m": Material()},
         spheres=[Sphere((0, 0, 0), 1, "m")],
         planes=[Plane(size=(1, 1), material="m")],
+        discs=[snell.Disc(radius=1, material="m")],
         lathes=[snell.Lathe([(0, 0), (1, 0), (0, 1)], "m")],
         textures={"t": snell.Texture([0, 1])},
         sky=snell.Sky(1),

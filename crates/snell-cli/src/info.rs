@@ -89,7 +89,7 @@ fn about_picture(picture: &Picture, args: &InfoArgs) -> Outcome {
 const SHOWN: usize = 20;
 
 fn about_scene(loaded: &Loaded, world: &World) -> String {
-    let Scene { render, camera, lights, materials, spheres, meshes, planes, boxes, lathes, .. } = &loaded.scene;
+    let Scene { render, camera, lights, materials, spheres, meshes, planes, boxes, discs, lathes, .. } = &loaded.scene;
     let mut text = format!("{}\n", loaded.source.name);
     let mut line = |name: &str, value: String| {
         let _ = writeln!(text, "  {name:12}{value}");
@@ -164,6 +164,11 @@ fn about_scene(loaded: &Loaded, world: &World) -> String {
         let cuboid = &boxes[i];
         let what = format!("from {:?} to {:?}, {}", cuboid.min, cuboid.max, cuboid.material);
         (cuboid.name.clone(), what + &places(cuboid.instances.len()))
+    });
+    list("disc", discs.len(), &|i| {
+        let disc = &discs[i];
+        let what = format!("at {:?}, normal {:?}, radius {}, {}", disc.center, disc.normal, disc.radius, disc.material);
+        (disc.name.clone(), what + &places(disc.instances.len()))
     });
     list("lathe", lathes.len(), &|i| {
         let lathe = &lathes[i];

@@ -8,7 +8,7 @@ use common::{alike, ball, close, furnace, glass, picture, tree};
 use snell::film::Rgb;
 use snell::geometry::Vec3;
 use snell::render::{Options, Settings, render, trace_pixel};
-use snell::scene::{Camera, Cuboid, Light, Material, Plane, Scene, Shadows, Sky, Sphere, Texture, Transform};
+use snell::scene::{Camera, Cuboid, Disc, Light, Material, Plane, Scene, Shadows, Sky, Sphere, Texture, Transform};
 use snell::texture::Image;
 use snell::world::World;
 use std::f64::consts::PI;
@@ -44,6 +44,42 @@ fn an_angle_of_view_lies_between_the_outermost_rows() {
         let [step_x, step_y] = [(right - left) / f64::from(last_x), (top - bottom) / f64::from(last_y)];
         assert!((step_x / step_y - 1.0).abs() < 1e-14);
     }
+}
+
+/// A disc of its own, and what a map makes of it: an ellipse has the area π·a·b, and looks where it looked.
+#[test]
+fn a_disc_is_as_large_as_it_is() {
+    for (scale, radii) in [([1.0; 3], [1.5, 1.5]), ([1.2, 0.5, -1.0], [1.8, 0.75])] {
+        let mut scene = dark_room(16);
+        paint(&mut scene, "white", Rgb::gray(1.0));
+        let transform = vec![Transform::Scale(scale)];
+        let text = r#"{ "normal": [0, 0, 1], "radius": 1.5, "material": "white" }"#;
+        let disc: Disc = serde_json::from_str(text).unwrap();
+        scene.discs.push(Disc { transform, ..disc });
+        scene.render.spp = 256;
+        let sum: f64 = picture(&scene).pixels.iter().map(|c| c.r).sum();
+        // The picture is 4 wide between the outermost of 16 points, at distance 5; the disc is at 10.
+        let pixel = 2.0 * 4.0 / 15.0;
+        let area = PI * radii[0] * radii[1] / (pixel * pixel);
+        // Each of some twenty pixels on its rim errs by less than one of its samples.
+        assert!((sum - area).abs() < 20.0 / 256.0, "{sum} for {area}");
+    }
+}
+
+/// What has no inside is refused if light is to go through it; a thin pane, or an interface, is not.
+#[test]
+fn a_transparent_sheet_needs_a_thickness() {
+    let mut scene = dark_room(1);
+    glass(&mut scene, "glass", 1.5, 0);
+    scene.planes.push(Plane::new([0.0; 3], [0.0, 0.0, 1.0], [8.0, 4.0], "glass"));
+    let problem = World::new(&scene).unwrap_err().remove(0);
+    let message = "`plane 1` is transparent but not a solid: it is open along 4 edges, the first from";
+    assert!(problem.message.starts_with(message), "{problem}");
+    scene.materials["glass"].thickness = Some(0.01);
+    assert!(World::new(&scene).is_ok());
+    scene.materials["glass"].thickness = None;
+    scene.planes[0].inside = Some("glass".to_owned());
+    assert!(World::new(&scene).is_ok());
 }
 
 /// Many samples measure areas: a white disc has that of a circle.

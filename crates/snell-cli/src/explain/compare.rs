@@ -62,11 +62,13 @@ fn remove(scene: &mut Scene, object: &str) {
     scene.spheres.iter_mut().enumerate().for_each(|(i, sphere)| name(&mut sphere.name, "sphere", i));
     scene.planes.iter_mut().enumerate().for_each(|(i, plane)| name(&mut plane.name, "plane", i));
     scene.boxes.iter_mut().enumerate().for_each(|(i, cuboid)| name(&mut cuboid.name, "box", i));
+    scene.discs.iter_mut().enumerate().for_each(|(i, disc)| name(&mut disc.name, "disc", i));
     scene.lathes.iter_mut().enumerate().for_each(|(i, lathe)| name(&mut lathe.name, "lathe", i));
     scene.spheres.retain(|sphere| sphere.name.as_deref() != Some(object));
     scene.meshes.retain(|mesh| mesh.name.as_deref() != Some(object));
     scene.planes.retain(|plane| plane.name.as_deref() != Some(object));
     scene.boxes.retain(|cuboid| cuboid.name.as_deref() != Some(object));
+    scene.discs.retain(|disc| disc.name.as_deref() != Some(object));
     scene.lathes.retain(|lathe| lathe.name.as_deref() != Some(object));
 }
 

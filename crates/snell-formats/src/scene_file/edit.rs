@@ -66,6 +66,7 @@ fn set_in(scene: &mut Scene, change: &str) -> Result<Vec<Step>, Report> {
         "mesh" => change.of_list(&mut scene.meshes, |mesh| mesh.name.as_deref()),
         "plane" => change.of_list(&mut scene.planes, |plane| plane.name.as_deref()),
         "box" => change.of_list(&mut scene.boxes, |cuboid| cuboid.name.as_deref()),
+        "disc" => change.of_list(&mut scene.discs, |disc| disc.name.as_deref()),
         "lathe" => change.of_list(&mut scene.lathes, |lathe| lathe.name.as_deref()),
         "material" => change.of_names(&mut scene.materials),
         "texture" => change.of_names(&mut scene.textures),
@@ -154,10 +155,12 @@ impl Change<'_> {
         let (lights, materials, textures) =
             (take(&mut scene.lights), take(&mut scene.materials), take(&mut scene.textures));
         let (spheres, meshes, planes) = (take(&mut scene.spheres), take(&mut scene.meshes), take(&mut scene.planes));
-        let (boxes, lathes) = (take(&mut scene.boxes), take(&mut scene.lathes));
+        let (boxes, discs, lathes) = (take(&mut scene.boxes), take(&mut scene.discs), take(&mut scene.lathes));
         let keys: Vec<&str> = std::iter::once(self.first).chain(self.path.iter().copied()).collect();
         let steps = self.of_table(scene, &keys, "");
-        *scene = Scene { lights, materials, textures, spheres, meshes, planes, boxes, lathes, ..scene.clone() };
+        let lists =
+            Scene { lights, materials, textures, spheres, meshes, planes, boxes, discs, lathes, ..scene.clone() };
+        *scene = lists;
         steps
     }
 
@@ -219,6 +222,7 @@ fn named(scene: &Scene, name: &str) -> Option<&'static str> {
         () if scene.meshes.iter().any(|mesh| is(&mesh.name)) => Some("mesh"),
         () if scene.planes.iter().any(|plane| is(&plane.name)) => Some("plane"),
         () if scene.boxes.iter().any(|cuboid| is(&cuboid.name)) => Some("box"),
+        () if scene.discs.iter().any(|disc| is(&disc.name)) => Some("disc"),
         () if scene.lathes.iter().any(|lathe| is(&lathe.name)) => Some("lathe"),
         () if scene.lights.iter().any(|light| is(&light.name)) => Some("light"),
         () if scene.textures.contains_key(name) => Some("texture"),

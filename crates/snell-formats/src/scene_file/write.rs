@@ -41,6 +41,7 @@ fn to_toml(scene: &Scene) -> Result<String, toml_edit::ser::Error> {
         meshes,
         planes,
         boxes,
+        discs,
         lathes,
     } = scene;
     let settings = Scene {
@@ -60,6 +61,7 @@ fn to_toml(scene: &Scene) -> Result<String, toml_edit::ser::Error> {
     lists(&mut text, "mesh", meshes)?;
     lists(&mut text, "plane", planes)?;
     lists(&mut text, "box", boxes)?;
+    lists(&mut text, "disc", discs)?;
     lists(&mut text, "lathe", lathes)?;
     Ok(text)
 }

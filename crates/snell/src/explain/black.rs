@@ -3,6 +3,7 @@
 use super::{Explanation, Names, explain};
 use crate::color::Rgb;
 use crate::film::Film;
+use crate::geometry::Bounds;
 use crate::scene::{Warning, WarningCode};
 
 /// So many columns and rows of pixels are looked at.
@@ -74,8 +75,7 @@ fn all_behind(names: &Names<'_>) -> bool {
     let [width, height] = world.camera.size;
     let (eye, ahead) = world.camera.ray(width / 2, height / 2);
     world.objects.iter().all(|object| {
-        let first = object.first as usize;
-        let place = world.spheres.get(first).map_or_else(|| world.corners(first)[0], |sphere| sphere.center);
-        (place - eye).dot(ahead) < 0.0
+        let Bounds { min, max } = world.shape(object.first as usize).bounds();
+        (min + (max - min) * 0.5 - eye).dot(ahead) < 0.0
     })
 }

@@ -91,15 +91,18 @@ impl ViewScene {
                 spheres.push(ViewSphere { name, center: sphere.center.into(), radius: sphere.radius, color, opacity });
                 continue;
             }
-            let corners = (object.first..object.first + object.count).flat_map(|p| world.corners(p as usize));
+            let shapes = (object.first..object.first + object.count).map(|p| world.shape(p as usize));
             let (vertices, faces): (Vec<f64>, Vec<u32>) = if object.count > room {
-                let corners = Bounds::of(corners).corners();
+                let corners = shapes.map(|shape| shape.bounds()).fold(Bounds::EMPTY, Bounds::union).corners();
                 let sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
                 let faces = sides.iter().flat_map(|&[a, b, c, d]| [a, b, c, a, c, d]).collect();
                 (corners.iter().flat_map(|p| [p.x, p.y, p.z]).collect(), faces)
             } else {
                 room -= object.count;
-                (corners.flat_map(|p| [p.x, p.y, p.z]).collect(), (0..3 * object.count).collect())
+                let mut vertices = Vec::new();
+                shapes
+                    .for_each(|shape| shape.tessellate(&mut |corners| vertices.extend(corners.map(<[f64; 3]>::from))));
+                (vertices.concat(), (0..vertices.len() as u32).collect())
             };
             meshes.push(ViewMesh { name, vertices, faces, color, opacity });
         }

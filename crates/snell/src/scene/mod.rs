@@ -4,8 +4,8 @@
 //! [`World`](crate::world::World) is its compiled form.
 
 mod camera;
+mod generated;
 mod light;
-mod made;
 mod material;
 mod problem;
 mod render;
@@ -18,8 +18,8 @@ mod validate;
 mod warning;
 
 pub use camera::Camera;
+pub use generated::{Cuboid, Disc, Lathe, Plane};
 pub use light::Light;
-pub use made::{Cuboid, Lathe, Plane};
 pub use material::Material;
 pub use problem::{Problem, Problems, Remedy, Step};
 pub use render::{BANDS, Integrator, MIN_THROUGHPUT, Render, Shadows};
@@ -99,6 +99,9 @@ pub struct Scene {
     /// Boxes.
     #[serde(default, rename = "box", skip_serializing_if = "Vec::is_empty", deserialize_with = "table::many")]
     pub boxes: Vec<Cuboid>,
+    /// Discs.
+    #[serde(default, rename = "disc", skip_serializing_if = "Vec::is_empty", deserialize_with = "table::many")]
+    pub discs: Vec<Disc>,
     /// What turns around an axis.
     #[serde(default, rename = "lathe", skip_serializing_if = "Vec::is_empty", deserialize_with = "table::many")]
     pub lathes: Vec<Lathe>,
@@ -123,6 +126,7 @@ impl Scene {
             meshes: Vec::new(),
             planes: Vec::new(),
             boxes: Vec::new(),
+            discs: Vec::new(),
             lathes: Vec::new(),
         }
     }

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 /// A pattern on a surface: squares of two colours, or a picture.
 ///
-/// It lies on planes and on the sides of boxes once, on spheres by longitude and latitude, around what a lathe made, and on
+/// It lies on planes, discs and the sides of boxes once, on spheres by longitude and latitude, around what a lathe made, and on
 /// meshes by the texture coordinates of the model.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

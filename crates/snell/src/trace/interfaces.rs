@@ -565,7 +565,7 @@ impl Paths {
             return Some(found);
         }
         self.crossings.retain(|&(t, primitive)| {
-            let starts = f64::from(primitive) == source && !world.shape(primitive as usize).is_round();
+            let starts = f64::from(primitive) == source && world.starts_at(primitive as usize, origin, dir, t);
             let leads_out = media.contains(before, world.interior_of(primitive as usize));
             !starts && (leads_out || leaving.meets(world, primitive, t))
         });

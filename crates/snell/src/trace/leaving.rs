@@ -20,6 +20,7 @@
 //! the place itself, and so do distances, except that tinted light is dimmed from where it is asked for.
 
 use crate::geometry::Vec3;
+use crate::geometry::shape::Departure;
 use crate::lanes::{Lanes, index};
 use crate::scene::Shadows;
 use crate::world::World;
@@ -88,25 +89,12 @@ impl Leaving {
         if t > self.clear || self.source < 0.0 {
             return t > 0.0;
         }
-        if f64::from(primitive) == self.source {
-            // The far wall of a sphere that it leaves inward.
-            return t > 0.0 && !world.starts_at(primitive as usize, self.origin, self.dir, t);
-        }
-        if let Some(sphere) = world.spheres.get(primitive as usize) {
-            // A sphere that it touches bends away: it is met by all that goes inward.
-            return t > 0.0 || (self.origin - sphere.center).dot(self.dir) < 0.0;
-        }
-        let (corners, n) = (world.corners(primitive as usize), self.normal(world));
+        let shape = world.shape(primitive as usize);
+        let n = self.normal(world);
         let up = if n.dot(self.dir) < 0.0 { -n } else { n };
-        if corners.iter().all(|&corner| up.dot(corner - self.origin) <= world.coincidence_tolerance) {
-            return false;
-        }
-        let other = world.geometric_normal(primitive as usize, self.origin);
-        // Four roundings: below that it is not known on which side the ray starts.
-        if other.dot(self.origin - corners[0]).abs() > world.coincidence_tolerance * 0.125 {
-            return t > 0.0;
-        }
-        (other.dot(self.dir) > 0.0) != (other.dot(self.wo) > 0.0)
+        let from =
+            Departure { origin: self.origin, dir: self.dir, wo: self.wo, up, tolerance: world.coincidence_tolerance };
+        if f64::from(primitive) == self.source { shape.is_met_again(&from, t) } else { shape.is_met(&from, t) }
     }
 
     /// Does anything up to `distance` through which no light goes really stand in its way, where it is not yet clear?

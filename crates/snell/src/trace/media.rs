@@ -132,7 +132,8 @@ impl<'a> Media<'a> {
         world.tree.near(origin, &mut faces);
         let leads_out = |primitive: u32| {
             let [behind, front] = [world.interior_of(primitive as usize), world.exterior_of(primitive as usize)];
-            let enters = behind != NO_SOLID && world.enters(primitive as usize, behind, origin, dir, 0.0);
+            let enters = behind != NO_SOLID
+                && world.enters(primitive as usize, behind, origin, dir, world.coincidence_tolerance);
             self.contains(set, if enters { front } else { behind }) && !(enters && self.contains(set, behind))
         };
         let distances = faces

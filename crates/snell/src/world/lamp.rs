@@ -15,7 +15,7 @@ struct Lamp {
 impl World {
     /// Warns of each light on a surface, to within what a hit may be off ([`coincidence_tolerance`](Self::coincidence_tolerance)).
     ///
-    /// Looks at the box of each triangle.
+    /// Looks at the box of each primitive.
     pub(super) fn find_lights_on_surfaces(&mut self, scene: &Scene, parts: &Parts) {
         if scene.render.shadows() == Shadows::Off {
             return;
@@ -31,7 +31,7 @@ impl World {
                 lamp.offer(((lamp.at - sphere.center).length() - sphere.radius).abs(), id, tolerance);
             }
         }
-        let mut look_at = |triangles: &Triangles, map: Affine, bounds: Bounds| {
+        let mut look_at = |first: u32, triangles: &Triangles, map: Affine, bounds: Bounds| {
             // The box of mapped corners holds all that is in it but for roundings, which are far smaller than the tolerance.
             if lamps.iter().any(|lamp| is_near(lamp.at, &bounds, 2.0 * tolerance)) {
                 for (id, face) in (first..).zip(&triangles.faces) {
@@ -42,14 +42,22 @@ impl World {
                     }
                 }
             }
-            first += triangles.faces.len() as u32;
+            first + triangles.faces.len() as u32
         };
         let whole = |triangles: &Triangles| Bounds::of(triangles.vertices.iter().copied());
-        look_at(&parts.triangles, Affine::IDENTITY, whole(&parts.triangles));
+        first = look_at(first, &parts.triangles, Affine::IDENTITY, whole(&parts.triangles));
+        let others = first..first + (parts.rectangles.len() + parts.cuboids.len() + parts.discs.len()) as u32;
+        first = others.end;
         let boxes: Vec<Bounds> = parts.models.iter().map(whole).collect();
         for (_, _, model, map) in &parts.placed {
             let bounds = Bounds::of(boxes[*model].corners().map(|corner| map.apply(corner)));
-            look_at(&parts.models[*model], *map, bounds);
+            first = look_at(first, &parts.models[*model], *map, bounds);
+        }
+        for id in others {
+            let shape = self.shape(id as usize);
+            for lamp in lamps.iter_mut().filter(|lamp| is_near(lamp.at, &shape.bounds(), tolerance)) {
+                lamp.offer(shape.distance(lamp.at), id, tolerance);
+            }
         }
         for lamp in lamps {
             let object = |(distance, id)| Some((distance, self.object_of(id)?));

@@ -5,8 +5,9 @@ use super::surface::{FLAT, Surfaces};
 use super::{NO_PRIMITIVE, NO_SOLID, Object, Solid, World};
 use crate::geometry::area::largest_angle;
 use crate::geometry::mesh::{MAX_SMOOTHED_VALENCE, NormalWeights};
+use crate::geometry::shape::{self, Cuboid, Disc, Rectangle};
 use crate::geometry::solid::{Options, repair, structure};
-use crate::geometry::{Affine, Bounds, TriangleMesh, Vec3, shape, triangle};
+use crate::geometry::{Affine, Bounds, TriangleMesh, Vec3, triangle};
 use crate::scene::{
     Integrator, LARGEST_NUMBER, Mesh, OpenMesh, Problem, Remedy, Step, Warning, WarningCode, whole_map,
 };
@@ -36,13 +37,26 @@ pub(super) struct Parts {
     pub models: Vec<Triangles>,
     /// The meshes to be placed, when all ids before them are known: shape of the scene, name, model, map.
     pub placed: Vec<(Which, String, usize, Affine)>,
+    /// Shapes that stand for themselves.
+    pub rectangles: Vec<Rectangle>,
+    pub cuboids: Vec<Cuboid>,
+    pub discs: Vec<Disc>,
     /// The solids of each model.
     pub solids: Vec<Vec<Solid>>,
 }
 
 impl Parts {
     pub fn of(integrator: Integrator) -> Self {
-        Self { integrator, triangles: Triangles::default(), models: Vec::new(), placed: Vec::new(), solids: Vec::new() }
+        Self {
+            integrator,
+            triangles: Triangles::default(),
+            models: Vec::new(),
+            placed: Vec::new(),
+            rectangles: Vec::new(),
+            cuboids: Vec::new(),
+            discs: Vec::new(),
+            solids: Vec::new(),
+        }
     }
 }
 
@@ -73,8 +87,8 @@ impl Sides {
     }
 }
 
-/// What is wrong with a mesh, without its place.
-fn refusal(message: String, help: &str, remedy: Option<Remedy>) -> Problem {
+/// What is wrong with a shape, without its place.
+pub(super) fn refusal(message: String, help: &str, remedy: Option<Remedy>) -> Problem {
     Problem { place: Vec::new(), message, help: Some(help.to_owned()), remedy }
 }
 
@@ -212,9 +226,7 @@ impl World {
         let mut media = materials.filter(|&m| self.refracts(m)).map(|m| self.medium_of(m));
         let Some(medium) = media.next() else {
             if mesh.inside.is_some() && self.has_media {
-                let message = format!("`{name}` has media on both sides, but light does not go through its material");
-                let help = "give the material a `ko` below 1 and no `thickness`, or remove `inside`";
-                return Err(refusal(message, help, None));
+                return Err(nothing_goes_through(name));
             }
             drop(media);
             return Ok((placed, Sides::None));
@@ -287,7 +299,7 @@ impl World {
     }
 
     /// The solid of all that interfaces say to be filled with a material.
-    fn medium_between_faces(&mut self, material: u32, bounds: Bounds) -> u32 {
+    pub(super) fn medium_between_faces(&mut self, material: u32, bounds: Bounds) -> u32 {
         let known = self.solids.iter().position(|solid| solid.between_faces_of == Some(material));
         let number = known.unwrap_or(self.solids.len());
         if known.is_none() {
@@ -331,19 +343,31 @@ impl World {
             }
         }
         let transparent = self.materials.iter().zip(used).any(|(m, &used)| used && m.is_transparent());
-        let refracts_spheres = matches!(integrator, Integrator::Lecture | Integrator::Course2020);
-        if transparent && refracts_spheres {
+        if transparent {
+            self.warn_not_refracted(name, place.to_vec(), integrator);
+        }
+    }
+
+    /// Warns of what is transparent and no sphere, where only spheres refract.
+    pub(super) fn warn_not_refracted(&mut self, name: &str, place: Vec<Step>, integrator: Integrator) {
+        if matches!(integrator, Integrator::Lecture | Integrator::Course2020) {
             let message = format!(
                 "`{name}` has a transparent material, but this integrator refracts only in spheres: \
                  its transparent share is not drawn"
             );
-            warn(WarningCode::MeshNotRefracted, message);
+            self.warnings.push(Warning { code: WarningCode::MeshNotRefracted, place, message });
         }
     }
 }
 
+/// Why faces cannot be interfaces, and what to do.
+pub(super) fn nothing_goes_through(name: &str) -> Problem {
+    let message = format!("`{name}` has media on both sides, but light does not go through its material");
+    refusal(message, "give the material a `ko` below 1 and no `thickness`, or remove `inside`", None)
+}
+
 /// Sets a value in a list that ends with the last value that is not the usual one.
-fn put_sparse(list: &mut Vec<u32>, at: usize, value: u32, usual: u32) {
+pub(super) fn put_sparse(list: &mut Vec<u32>, at: usize, value: u32, usual: u32) {
     if value != usual {
         list.resize(at, usual);
         list.push(value);

@@ -5,6 +5,7 @@ mod lamp;
 mod light;
 mod material;
 mod mesh;
+mod shape;
 mod skipped;
 mod solid;
 mod sphere;
@@ -42,8 +43,8 @@ pub struct Object {
 
 /// A scene that is ready to be traced.
 ///
-/// Primitives are numbered in the order of the scene, all spheres before all triangles. At equal distance the lower
-/// number is hit.
+/// Primitives are numbered kind by kind, those of a kind in the order of the scene: spheres, triangles, planes, boxes, discs,
+/// then what stands in many places. At equal distance the lower number is hit.
 #[derive(Clone, Debug)]
 pub struct World {
     /// The camera, placed.
@@ -154,9 +155,8 @@ impl World {
         let mut parts = Parts::of(scene.render.integrator);
         let mut add = |kind, i, mesh: &Mesh| world.add_mesh((kind, i), mesh, &material_ids, &mut parts);
         scene.meshes.iter().enumerate().try_for_each(|(i, mesh)| add("mesh", i, mesh))?;
-        scene.planes.iter().enumerate().try_for_each(|(i, plane)| add("plane", i, &plane.mesh(i)))?;
-        scene.boxes.iter().enumerate().try_for_each(|(i, cuboid)| add("box", i, &cuboid.mesh(i)))?;
         scene.lathes.iter().enumerate().try_for_each(|(i, lathe)| add("lathe", i, &lathe.mesh(i)))?;
+        world.add_shapes(scene, &material_ids, &mut parts)?;
         for surfaces in world.models.iter_mut().chain([&mut world.surfaces]) {
             world.all_flat &= surfaces.corner_normals.is_empty();
             if surfaces.corner_normals.is_empty() {

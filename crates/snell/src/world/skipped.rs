@@ -23,9 +23,13 @@ impl World {
                 skipped.meets_sphere(sphere)
             } else {
                 let place = self.placement(first).map(|(place, _)| place.bounds.corners());
-                let mut triangles = first..first + object.count as usize;
+                let mut primitives = first..first + object.count as usize;
                 !place.is_some_and(|corners| skipped.leaves_out(&corners))
-                    && triangles.any(|id| skipped.meets_triangle(self.corners(id)))
+                    && primitives.any(|id| {
+                        let mut meets = false;
+                        self.shape(id).tessellate(&mut |corners| meets |= skipped.meets_triangle(corners));
+                        meets
+                    })
             };
             if stands_there {
                 names.push(&object.name);

@@ -229,7 +229,7 @@ impl World {
     /// Does a ray that crosses a primitive of this solid at `t` enter it?
     pub(crate) fn enters(&self, primitive: usize, solid: u32, origin: Vec3, dir: Vec3, t: f64) -> bool {
         let mirrored = self.placement(primitive).is_some_and(|(placement, _)| placement.to_world.mirrors());
-        let (origin, dir, shape) = self.in_model(primitive, origin, dir);
-        shape.enters(origin, dir, t) != (self.solids[solid as usize].inward != mirrored)
+        let enters = self.ask_of_ray(primitive, (origin, dir), |surface, origin, dir| surface.enters(origin, dir, t));
+        enters != (self.solids[solid as usize].inward != mirrored)
     }
 }

@@ -3,9 +3,8 @@
 use super::{NO_SOLID, World};
 use crate::color::Rgb;
 use crate::geometry::area::area_vector;
-use crate::geometry::bvh::Bvh;
 use crate::geometry::ray::{Heading, axes, main_axis};
-use crate::geometry::shape::{AnyShape, Kind, Triangle};
+use crate::geometry::shape::{AnyShape, Kind, Surface, Triangle};
 use crate::geometry::{Affine, Bounds, Vec3, triangle};
 use crate::lanes::{Lanes, MAX_WIDTH, Mask};
 use crate::scene::Shadows;
@@ -53,6 +52,9 @@ impl<L: Lanes> Side<L> {
         Self { within: L::Mask::from_bits(0), either: L::Mask::from_bits(0) }
     }
 }
+
+/// By which angle planes and boxes that are turned alike may differ: some dozens of roundings, of the steps that turn them.
+const TURNED: f64 = 1.0 / (1u64 << 47) as f64;
 
 /// A mesh in one of its places.
 #[derive(Clone, Copy, Debug)]
@@ -156,18 +158,17 @@ impl World {
     /// Is a crossing of the primitive on which a ray starts only its start? Not if it is the far wall of a sphere that the ray
     /// leaves inward. Distances do not tell: at a grazing angle they are off by much.
     pub(crate) fn starts_at(&self, primitive: usize, origin: Vec3, dir: Vec3, t: f64) -> bool {
-        self.shape(primitive).starts_at(origin, dir, t)
+        self.ask(primitive, |surface| surface.starts_at(origin, dir, t))
     }
 
     /// The unit normal of the face itself, outward.
     pub(crate) fn geometric_normal(&self, primitive: usize, point: Vec3) -> Vec3 {
-        self.shape(primitive).normal(point)
+        self.ask(primitive, |surface| surface.normal(point))
     }
 
     /// Where a line meets a primitive; a sphere on the side on which it was met at about `t`.
     pub(crate) fn meets_at(&self, primitive: usize, origin: Vec3, dir: Vec3, t: f64) -> Option<f64> {
-        let (origin, dir, shape) = self.in_model(primitive, origin, dir);
-        shape.meets_at(origin, dir, t)
+        self.ask_of_ray(primitive, (origin, dir), |surface, origin, dir| surface.meets_at(origin, dir, t))
     }
 
     /// The face of the same object that looks at a ray and is in the place where the ray has met the back of an opaque one: along the
@@ -191,35 +192,53 @@ impl World {
     pub(crate) fn is_edge_on(&self, primitive: usize, dir: Vec3) -> bool {
         let shape = self.shape(primitive);
         let bounds = shape.bounds();
-        !shape.is_round() && shape.normal(bounds.min).dot(dir).abs() * bounds.diagonal() <= self.coincidence_tolerance
+        shape.is_flat() && shape.normal(bounds.min).dot(dir).abs() * bounds.diagonal() <= self.coincidence_tolerance
     }
 
     /// A primitive, in the space of the world.
     pub(crate) fn shape(&self, primitive: usize) -> AnyShape {
-        match self.tree.shape(primitive) {
-            Some(shape) => shape,
-            None => Triangle { corners: self.corners(primitive) }.any(),
+        let placed = || Triangle { corners: self.triangle(primitive).unwrap_or_default() }.any();
+        self.tree.shape(primitive).unwrap_or_else(placed)
+    }
+
+    /// The same, for a question that is often asked: most scenes are made of spheres and triangles.
+    #[inline(always)]
+    fn ask<A>(&self, primitive: usize, question: impl Fn(&dyn Surface) -> A) -> A {
+        if let Some(sphere) = self.spheres.get(primitive) {
+            return question(sphere);
+        }
+        match self.triangle(primitive) {
+            Some(corners) => question(&Triangle { corners }),
+            None => question(&*self.shape(primitive)),
         }
     }
 
-    /// A ray and a primitive in the space in which the one meets the other: that of the model, for an instance.
-    pub(super) fn in_model(&self, primitive: usize, origin: Vec3, dir: Vec3) -> (Vec3, Vec3, AnyShape) {
-        let place = self.placement(primitive);
-        let in_model = place.and_then(|(place, id)| Some((place, self.tree.model(place.model).shape(id)?)));
-        match in_model {
-            None => (origin, dir, self.shape(primitive)),
-            Some((Placement { to_model, .. }, shape)) => (to_model.apply(origin), to_model.turn(dir), shape),
-        }
+    /// The same in the space in which rays meet the primitive, which is that of the model for an instance, and with a ray there.
+    #[inline(always)]
+    pub(super) fn ask_of_ray<A>(
+        &self,
+        primitive: usize,
+        (origin, dir): (Vec3, Vec3),
+        question: impl Fn(&dyn Surface, Vec3, Vec3) -> A,
+    ) -> A {
+        let Some((Placement { model, to_model, .. }, id)) = self.placement(primitive) else {
+            return self.ask(primitive, |surface| question(surface, origin, dir));
+        };
+        let corners = self.tree.model(*model).get(id).map_or_else(Default::default, |Triangle { corners }| corners);
+        question(&Triangle { corners }, to_model.apply(origin), to_model.turn(dir))
     }
 
     /// Are the surfaces parallel in two places, for all that is known of them? Smoothed normals count, as a smoothed face stands
     /// for a curved one.
     pub(crate) fn are_parallel(&self, places: [(usize, Vec3); 2], dir: Vec3) -> bool {
         let [(a, a_slack), (b, b_slack)] = places.map(|(primitive, point)| {
-            if primitive < self.spheres.len() {
-                return (self.geometric_normal(primitive, point), 0.0);
-            }
-            let corners = self.corners(primitive);
+            let Some(corners) = self.triangle(primitive) else {
+                // What is exact is as parallel as it is.
+                return (
+                    self.geometric_normal(primitive, point),
+                    if primitive < self.spheres.len() { 0.0 } else { TURNED },
+                );
+            };
             let smooth = self.smooth_normal(primitive, corners, point, dir).map(Vec3::unit);
             (smooth.unwrap_or_else(|| triangle::normal(corners)), self.tilt(primitive, corners))
         });
@@ -243,15 +262,21 @@ impl World {
         self.placement(primitive).map_or(0, |(placement, id)| self.models[placement.model].material_of[id])
     }
 
-    /// The corners of a triangle, in the space of the world; of anything else only the origin.
-    pub(crate) fn corners(&self, primitive: usize) -> [Vec3; 3] {
-        let corners = |tree: &Bvh, id: usize| tree.get::<Triangle>(id).map_or([Vec3::default(); 3], |t| t.corners);
+    /// The corners of a primitive that is a triangle, in the space of the world.
+    #[inline(always)]
+    fn triangle(&self, primitive: usize) -> Option<[Vec3; 3]> {
         match self.placement(primitive) {
-            None => corners(&self.tree, primitive),
+            None => Some(self.tree.get::<Triangle>(primitive)?.corners),
             Some((placement, id)) => {
-                corners(self.tree.model(placement.model), id).map(|corner| placement.to_world.apply(corner))
+                let Triangle { corners } = self.tree.model(placement.model).get(id)?;
+                Some(corners.map(|corner| placement.to_world.apply(corner)))
             }
         }
+    }
+
+    /// The outward normal of a shape that is neither sphere nor triangle, where a ray has met it.
+    fn normal_along(&self, primitive: usize, point: Vec3, dir: Vec3, within: bool) -> Vec3 {
+        self.shape(primitive).normal_along(point, dir, within, self.coincidence_tolerance)
     }
 
     /// The texture coordinates at the corners of a triangle, if it has any.
@@ -314,15 +339,27 @@ impl World {
             }
         }
         if (!spheres).any() {
-            // A lane with a sphere gets a triangle without area, and is not looked at.
-            let mut corners = [[Vec3::default(); 3]; MAX_WIDTH];
+            // A lane with another shape gets a triangle without area, and is not looked at.
+            let (mut corners, mut others, mut normals) =
+                ([[Vec3::default(); 3]; MAX_WIDTH], 0, [Vec3::default(); MAX_WIDTH]);
             for lane in 0..L::WIDTH {
-                if !spheres.test(lane) {
-                    corners[lane] = self.corners(primitives[lane]);
+                if spheres.test(lane) {
+                    continue;
+                }
+                if let Some(own) = self.triangle(primitives[lane]) {
+                    corners[lane] = own;
+                } else {
+                    let (point, dir) = (point.lane(lane), dir.lane(lane));
+                    normals[lane] = self.normal_along(primitives[lane], point, dir, side.within.test(lane));
+                    others |= 1 << lane;
                 }
             }
             let (a, b) = (Vec3::<L>::from_fn(|lane| corners[lane][0]), Vec3::from_fn(|lane| corners[lane][1]));
-            let flat = triangle::normal([a, b, Vec3::from_fn(|lane| corners[lane][2])]);
+            let mut flat = triangle::normal([a, b, Vec3::from_fn(|lane| corners[lane][2])]);
+            let others = L::Mask::from_bits(others);
+            if others.any() {
+                flat = Vec3::select(others, Vec3::from_fn(|lane| normals[lane]), flat);
+            }
             let smooth = if self.all_flat {
                 flat
             } else {
@@ -336,7 +373,7 @@ impl World {
             };
             let behind = flat.dot(dir).gt(L::splat(0.0));
             let (smooth, flat) = (Vec3::select(behind, -smooth, smooth), Vec3::select(behind, -flat, flat));
-            let (mut rim, mut near_one) = (behind & !spheres, L::Mask::from_bits(0));
+            let (mut rim, mut near_one) = (behind & !spheres & !others, L::Mask::from_bits(0));
             if rim.any() {
                 let c = Vec3::<L>::from_fn(|lane| corners[lane][2]);
                 let far = RIM * self.coincidence_tolerance;

@@ -13,9 +13,16 @@ impl World {
             let place = vec![Step::from(kind), Step::from(index), Step::from("instances")];
             Problem { place, message, help: None, remedy: None }
         };
-        let shapes = Shapes { spheres: &self.spheres, triangles: parts.triangles.list(), ..Shapes::default() };
+        let shapes = Shapes {
+            spheres: &self.spheres,
+            triangles: parts.triangles.list(),
+            rectangles: &parts.rectangles,
+            cuboids: &parts.cuboids,
+            discs: &parts.discs,
+            instances: &[],
+        };
         if shapes.count() + parts.placed.len() >= 1 << 31 {
-            let message = "more than 2 billion spheres and triangles".to_owned();
+            let message = "more than 2 billion shapes and triangles".to_owned();
             return Err(Problem { place: vec![Step::from("mesh")], message, help: None, remedy: None });
         }
         // Rays start at the camera or on surfaces; no ray origin is farther from a primitive than this.

@@ -226,7 +226,7 @@ mod tests {
                 Bvh::build(&shapes, vec![], MARGIN * 4.0 * reach, Quality::Good, 1)
             };
             let triangles = Triangles { vertices: &vertices, faces: own };
-            let shapes = Shapes { spheres: &spheres, triangles, instances: &instances };
+            let shapes = Shapes { spheres: &spheres, triangles, instances: &instances, ..Shapes::default() };
             let tree = Bvh::build(&shapes, vec![model(few), model(all)], MARGIN * reach, Quality::Good, 1);
             let flat = tree.clone().flat();
             let limits = [(0.0, f64::INFINITY), (1.0, 4.0), (2.0, 2.0), (0.0, f64::NAN), (1e-5, 8.0)];

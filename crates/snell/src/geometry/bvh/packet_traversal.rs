@@ -11,7 +11,7 @@ use super::nearest::Nearest;
 use super::node::{self, Block, Child, Kind, Node, plane};
 use super::packet::{Octant, Packet, SIZE, groups};
 use super::primitives::{INSTANCES, RunOf};
-use crate::geometry::shape::{self, ForKind, One, of_kind};
+use crate::geometry::shape::{self, ForKind, One, of_common_kind, of_kind};
 use crate::lanes::{Kernel, Lanes, Mask};
 use std::marker::PhantomData;
 
@@ -229,17 +229,11 @@ impl Bvh {
         octant: &Octant,
         block: Block,
     ) -> u64 {
-        let (mut hit, mut run) = (0, self.primitives.first(block));
-        loop {
-            if run.kind == INSTANCES {
-                let open = if ANY { rays & !hit } else { rays };
-                hit |= self.visit_each::<L, ANY>(packet, open, run.ids());
-            } else {
-                hit |= of_kind(run.kind, TestRun::<L> { packet, rays, octant, run, lanes: PhantomData });
-            }
-            let Some(next) = run.next() else { return hit };
-            run = next;
+        let run = self.primitives.first(block);
+        if run.is_common() {
+            return of_common_kind(run.kind, TestRun::<L> { packet, rays, octant, run, lanes: PhantomData });
         }
+        L::call(TestRuns::<ANY> { tree: self, packet, rays, octant, run })
     }
 
     /// Is it cheaper to test the primitives of a leaf against one ray after the other than against the rays in lanes?
@@ -256,6 +250,34 @@ impl Bvh {
             run = next;
         }
         rays.count_ones() as usize * one_by_one <= groups::<L>(rays).count() * together
+    }
+}
+
+/// Tests the primitives of all runs of a leaf, from the first one on.
+struct TestRuns<'a, const ANY: bool> {
+    tree: &'a Bvh,
+    packet: &'a mut Packet,
+    rays: u64,
+    octant: &'a Octant,
+    run: RunOf<'a>,
+}
+
+impl<const ANY: bool> Kernel for TestRuns<'_, ANY> {
+    type Output = u64;
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> u64 {
+        let Self { tree, packet, rays, octant, mut run } = self;
+        let mut hit = 0;
+        loop {
+            if run.kind == INSTANCES {
+                let open = if ANY { rays & !hit } else { rays };
+                hit |= tree.visit_each::<L, ANY>(packet, open, run.ids());
+            } else {
+                hit |= of_kind(run.kind, TestRun::<L> { packet, rays, octant, run, lanes: PhantomData });
+            }
+            let Some(next) = run.next() else { return hit };
+            run = next;
+        }
     }
 }
 

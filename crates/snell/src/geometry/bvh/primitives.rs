@@ -1,7 +1,7 @@
 //! The primitives of the leaves, in columns, so that several of a leaf are read at once.
 
 use super::node::{Block, Child, Kind as ChildKind, Run, Tree};
-use crate::geometry::shape::{AnyShape, ForKind, KINDS, Kind, NUMBERS, ShapeList, Shapes, kind_of, of_kind};
+use crate::geometry::shape::{AnyShape, COMMON, ForKind, KINDS, Kind, NUMBERS, ShapeList, Shapes, kind_of, of_kind};
 use crate::lanes::MAX_WIDTH;
 use crate::memory;
 
@@ -43,6 +43,12 @@ impl<'a> RunOf<'a> {
     #[inline(always)]
     fn new(Run { kind, count, more }: Run, numbers: &'a [f64]) -> Self {
         Self { kind, count, more, numbers }
+    }
+
+    /// Is it all of its leaf, and of a common kind?
+    #[inline(always)]
+    pub fn is_common(&self) -> bool {
+        !self.more && COMMON >> self.kind & 1 == 1
     }
 
     /// Its ids, or numbers of instances.

@@ -5,8 +5,8 @@ use super::build::MOST_WAITING;
 use super::node::{Block, Child, Node, WIDTH, plane};
 use super::packet::{Octant, Packet};
 use super::primitives::{INSTANCES, RunOf};
-use crate::geometry::shape::{ForKind, Kind, Neighbours, Query, of_kind};
-use crate::lanes::{Lanes, Mask};
+use crate::geometry::shape::{ForKind, Kind, Neighbours, Query, of_common_kind, of_kind};
+use crate::lanes::{Kernel, Lanes, Mask};
 use std::marker::PhantomData;
 
 /// So many rays are on their way at the same time.
@@ -113,12 +113,34 @@ impl Bvh {
         octant: &Octant,
         block: Block,
     ) -> bool {
-        let (mut found, mut run) = (false, self.primitives.first(block));
+        let run = self.primitives.first(block);
+        if run.is_common() {
+            return of_common_kind(run.kind, TestRun::<L> { packet, ray, octant, run, lanes: PhantomData });
+        }
+        L::call(TestRuns::<ANY> { tree: self, packet, ray, octant, run })
+    }
+}
+
+/// Tests one ray against all runs of a leaf, from the first one on.
+struct TestRuns<'a, const ANY: bool> {
+    tree: &'a Bvh,
+    packet: &'a mut Packet,
+    ray: usize,
+    octant: &'a Octant,
+    run: RunOf<'a>,
+}
+
+impl<const ANY: bool> Kernel for TestRuns<'_, ANY> {
+    type Output = bool;
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> bool {
+        let Self { tree, packet, ray, octant, mut run } = self;
+        let mut found = false;
         loop {
             if run.kind != INSTANCES {
                 found |= of_kind(run.kind, TestRun::<L> { packet, ray, octant, run, lanes: PhantomData });
             } else if !(ANY && found) {
-                found |= self.visit_each::<L, ANY>(packet, 1 << ray, run.ids()) != 0;
+                found |= tree.visit_each::<L, ANY>(packet, 1 << ray, run.ids()) != 0;
             }
             let Some(next) = run.next() else { return found };
             run = next;

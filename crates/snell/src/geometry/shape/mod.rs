@@ -10,16 +10,25 @@
 //!
 //! To add a shape, write its file and add its line to the list: no tree, traversal or tracer knows which shapes there are.
 
+mod cuboid;
+mod disc;
+mod flat;
+mod rectangle;
 pub mod sphere;
+#[cfg(test)]
+mod tests;
 pub mod triangle;
 
+pub use cuboid::Cuboid;
+pub use disc::Disc;
+pub use rectangle::Rectangle;
 pub use sphere::Sphere;
 pub use triangle::{Triangle, Triangles};
 
 use super::bvh::Instance;
-use super::ray::Ray;
+use super::ray::{Heading, Ray, axes, main_axis};
 use super::{Bounds, Vec3};
-use crate::lanes::Lanes;
+use crate::lanes::{Lanes, Mask};
 use std::fmt::Debug;
 use std::ops::Deref;
 
@@ -33,6 +42,10 @@ pub(crate) trait Shape: Surface + Copy + Debug + 'static {
 
     /// Does its test take vectors in the order of a ray's axes, with the shears ([`Heading`](super::ray::Heading))?
     const SHEARED: bool;
+
+    /// Is it what most scenes are made of, so that its test stands wherever leaves are tested? Leaves of others, and of several kinds,
+    /// are tested by a function of their own, which must not stand in the way.
+    const COMMON: bool;
 
     /// Its numbers, in the order of the columns.
     fn write(&self, put: impl FnMut(f64));
@@ -56,9 +69,9 @@ pub(crate) trait Surface {
     /// A box that holds every hit.
     fn bounds(&self) -> Bounds;
 
-    /// Is it curved everywhere, so that a ray which starts on it and goes outward is clear of it at once?
-    fn is_round(&self) -> bool {
-        false
+    /// Is it all in one plane?
+    fn is_flat(&self) -> bool {
+        true
     }
 
     /// Does a ray come from the side to which its normal points, if it crosses it at `t`?
@@ -66,7 +79,9 @@ pub(crate) trait Surface {
 
     /// Is a crossing at `t` of a ray that leaves the shape only its start? Not if it is a far side of what the ray goes through.
     /// Distances do not tell: at a grazing angle they are off by much.
-    fn starts_at(&self, origin: Vec3, dir: Vec3, t: f64) -> bool;
+    fn starts_at(&self, _origin: Vec3, _dir: Vec3, _t: f64) -> bool {
+        true
+    }
 
     /// Where a line meets it, on the side on which it was met at about `t`.
     fn meets_at(&self, origin: Vec3, dir: Vec3, t: f64) -> Option<f64>;
@@ -74,11 +89,59 @@ pub(crate) trait Surface {
     /// Its unit normal at a point on it, outward.
     fn normal(&self, point: Vec3) -> Vec3;
 
+    /// The same where a ray in this direction has met it, surely from within or from whichever side it came: of several faces near the
+    /// point one that is crossed so. A way through it that is no longer than `tolerance`, as at an edge, is met from outside.
+    fn normal_along(&self, point: Vec3, _dir: Vec3, _within: bool, _tolerance: f64) -> Vec3 {
+        self.normal(point)
+    }
+
+    /// The normal where a ray crosses it at `t`, and how far the origin of the ray is in front of the plane across it there.
+    fn height(&self, origin: Vec3, dir: Vec3, t: f64) -> (Vec3, f64);
+
+    /// How far it rises above the plane through `origin` across `up`, which is of unit length.
+    fn rises(&self, origin: Vec3, up: Vec3) -> f64;
+
+    /// Does a ray that has just left another face really meet it, where the tests find it at `t`, perhaps behind the start? Only if
+    /// it rises above the plane of that face; and where the start lies on it, only if the ray goes to its other side.
+    fn is_met(&self, from: &Departure, t: f64) -> bool {
+        if self.rises(from.origin, from.up) <= from.tolerance {
+            return false;
+        }
+        let (normal, height) = self.height(from.origin, from.dir, t);
+        // Four roundings: below that it is not known on which side the ray starts.
+        if height.abs() > from.tolerance * 0.125 {
+            return t > 0.0;
+        }
+        (normal.dot(from.dir) > 0.0) != (normal.dot(from.wo) > 0.0)
+    }
+
+    /// The same of a ray that has just left this shape itself.
+    fn is_met_again(&self, from: &Departure, t: f64) -> bool {
+        t > 0.0 && !self.starts_at(from.origin, from.dir, t)
+    }
+
     /// Texture coordinates of a point on it.
     fn uv(&self, point: Vec3) -> [f64; 2];
 
     /// How far a point is from it.
     fn distance(&self, point: Vec3) -> f64;
+
+    /// Triangles that look like it, or are it.
+    fn tessellate(&self, put: &mut dyn FnMut([Vec3; 3]));
+}
+
+/// A ray that has just left a surface, while it is not yet clear of it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Departure {
+    pub origin: Vec3,
+    /// Of unit length.
+    pub dir: Vec3,
+    /// Towards where the light came from that it carries on or answers.
+    pub wo: Vec3,
+    /// The unit normal of the face that it leaves, on the side to which it goes.
+    pub up: Vec3,
+    /// What a hit may be off the plane of its face.
+    pub tolerance: f64,
 }
 
 /// What a test needs to know of rays besides where they go.
@@ -193,7 +256,7 @@ macro_rules! shapes {
             }
         })+
 
-        /// Does some work for the kind of this number.
+        /// Does some work for the kind of this number; nothing for instances, which are of none.
         #[inline(always)]
         pub(crate) fn of_kind<W: ForKind>(kind: usize, work: W) -> W::Output {
             $(if kind == $Shape::KIND {
@@ -201,6 +264,18 @@ macro_rules! shapes {
             })+
             W::Output::default()
         }
+
+        /// The same for kinds that are common.
+        #[inline(always)]
+        pub(crate) fn of_common_kind<W: ForKind>(kind: usize, work: W) -> W::Output {
+            $(if $Shape::COMMON && kind == $Shape::KIND {
+                return work.run::<$Shape>();
+            })+
+            W::Output::default()
+        }
+
+        /// A bit for each kind that is common.
+        pub(crate) const COMMON: u32 = $(($Shape::COMMON as u32) << $Shape::KIND)|+;
 
         /// A shape of any kind.
         #[derive(Clone, Copy, Debug)]
@@ -219,6 +294,27 @@ macro_rules! shapes {
 shapes! {
     Sphere, spheres: &'a [Sphere], "The spheres.";
     Triangle, triangles: Triangles<'a>, "The triangles.";
+    Rectangle, rectangles: &'a [Rectangle], "The rectangles.";
+    Cuboid, cuboids: &'a [Cuboid], "The boxes.";
+    Disc, discs: &'a [Disc], "The discs.";
+}
+
+impl<L: Lanes> Query<L> {
+    /// Of a line on both sides of its origin.
+    #[inline(always)]
+    pub fn everywhere() -> Self {
+        Self { two_sided: true, t_min: L::splat(f64::NEG_INFINITY), leaves: L::Mask::from_bits(0) }
+    }
+}
+
+/// Where a line meets a shape of which no ray is on both sides.
+fn meet<S: Shape>(shape: &S, origin: Vec3, dir: Vec3) -> Option<f64> {
+    let axes = if S::SHEARED { axes(main_axis(dir)) } else { [0, 1, 2] };
+    let ray = Ray { origin: origin.permuted(axes), heading: Heading::new(dir.permuted(axes)), axes };
+    let mut numbers = Vec::with_capacity(S::NUMBERS);
+    shape.write(|number| numbers.push(number));
+    let (t, meets) = S::intersect(&ray, One { numbers: &numbers, stride: 1, place: 0 }, &Query::everywhere());
+    meets.then_some(t)
 }
 
 impl Shapes<'_> {
@@ -245,10 +341,8 @@ impl Shapes<'_> {
     /// The same, where the [`firsts`](Self::firsts) are known.
     pub(crate) fn bounds_from(&self, firsts: &[usize; KINDS + 2], number: usize) -> Bounds {
         let kind = kind_of(firsts, number);
-        if kind == KINDS {
-            return self.instances[number - firsts[KINDS]].bounds;
-        }
-        of_kind(kind, BoundsOf(self, number - firsts[kind])).unwrap_or(Bounds::EMPTY)
+        let place = number - firsts[kind];
+        of_kind(kind, BoundsOf(self, place)).unwrap_or_else(|| self.instances[place].bounds)
     }
 }
 

@@ -1,6 +1,6 @@
 //! Ray and sphere.
 
-use super::{Numbers, Query, Shape, Surface};
+use super::{Departure, Numbers, Query, Shape, Surface};
 use crate::geometry::ray::Ray;
 use crate::geometry::{Bounds, Vec3};
 use crate::lanes::{Lanes, Mask};
@@ -28,6 +28,7 @@ impl Shape for Sphere {
     /// Centre, radius.
     const NUMBERS: usize = 4;
     const SHEARED: bool = false;
+    const COMMON: bool = true;
 
     fn write(&self, put: impl FnMut(f64)) {
         let Vec3 { x, y, z } = self.center;
@@ -73,8 +74,8 @@ impl Surface for Sphere {
         Bounds { min: self.center - r, max: self.center + r }
     }
 
-    fn is_round(&self) -> bool {
-        true
+    fn is_flat(&self) -> bool {
+        false
     }
 
     /// The near root is before the point that is nearest to the centre.
@@ -98,12 +99,39 @@ impl Surface for Sphere {
         (point - self.center).unit()
     }
 
+    fn height(&self, origin: Vec3, dir: Vec3, t: f64) -> (Vec3, f64) {
+        let at = origin + dir * t;
+        (self.normal(at), self.normal(at).dot(origin - at))
+    }
+
+    fn rises(&self, origin: Vec3, up: Vec3) -> f64 {
+        up.dot(self.center - origin) + self.radius
+    }
+
+    /// A sphere that it touches bends away: it is met by all that goes inward.
+    fn is_met(&self, from: &Departure, t: f64) -> bool {
+        t > 0.0 || (from.origin - self.center).dot(from.dir) < 0.0
+    }
+
     fn uv(&self, point: Vec3) -> [f64; 2] {
         uv(point - self.center)
     }
 
     fn distance(&self, point: Vec3) -> f64 {
         ((point - self.center).length() - self.radius).abs()
+    }
+
+    /// An octahedron.
+    fn tessellate(&self, put: &mut dyn FnMut([Vec3; 3])) {
+        let Self { center, radius } = *self;
+        let ring = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0], [1.0, 0.0]];
+        let at = |[x, z]: [f64; 2]| center + Vec3::new(x, 0.0, z) * radius;
+        let poles = [1.0, -1.0].map(|y| center + Vec3::new(0.0, y * radius, 0.0));
+        for pair in ring.windows(2) {
+            for pole in poles {
+                put([pole, at(pair[0]), at(pair[1])]);
+            }
+        }
     }
 }
 

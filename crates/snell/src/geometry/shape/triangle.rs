@@ -14,10 +14,11 @@
 //!    ([`area`](crate::geometry::area)). The weights of the edge functions would do for round triangles only: they err by `2⁻⁵³` times the
 //!    aspect.
 //! 3. *Where along it is the triangle?* Grazing rays meet a plane anywhere. The hit is moved into the triangle's own box, with
-//!    `SLACK` for what was rounded in 1, which a ray that goes through the triangle surely meets. So no tree of boxes can
+//!    room for what was rounded in 1, which a ray that goes through the triangle surely meets. So no tree of boxes can
 //!    hide a hit, and none is refused.
 
-use super::{Numbers, Query, Shape, ShapeList, Surface};
+use super::flat::meet_plane;
+use super::{Numbers, Query, Shape, ShapeList, Surface, meet};
 use crate::geometry::area::area_vector;
 use crate::geometry::ray::{Heading, Ray, axes, main_axis};
 use crate::geometry::{Bounds, Vec3};
@@ -53,6 +54,7 @@ impl Shape for Triangle {
     /// Three corners.
     const NUMBERS: usize = 9;
     const SHEARED: bool = true;
+    const COMMON: bool = true;
 
     fn write(&self, put: impl FnMut(f64)) {
         self.corners.into_iter().flat_map(<[f64; 3]>::from).for_each(put);
@@ -78,8 +80,7 @@ impl Shape for Triangle {
     }
 
     fn crossings(ray: &Ray<f64>, shape: impl Numbers<f64>, mut found: impl FnMut(f64)) {
-        let query = Query { two_sided: true, t_min: f64::NEG_INFINITY, leaves: false };
-        let (t, meets) = Self::intersect(ray, shape, &query);
+        let (t, meets) = Self::intersect(ray, shape, &Query::everywhere());
         if meets {
             found(t);
         }
@@ -95,19 +96,21 @@ impl Surface for Triangle {
         is_front(origin, dir, self.corners)
     }
 
-    fn starts_at(&self, _origin: Vec3, _dir: Vec3, _t: f64) -> bool {
-        true
-    }
-
     fn meets_at(&self, origin: Vec3, dir: Vec3, _t: f64) -> Option<f64> {
-        let k = axes(main_axis(dir));
-        let heading = Heading::new(dir.permuted(k));
-        let hit = intersect::<f64>(origin.permuted(k), &heading, self.corners.map(|v| v.permuted(k)));
-        hit.meets.then_some(hit.t)
+        meet(self, origin, dir)
     }
 
     fn normal(&self, _point: Vec3) -> Vec3 {
         normal(self.corners)
+    }
+
+    fn height(&self, origin: Vec3, _dir: Vec3, _t: f64) -> (Vec3, f64) {
+        let normal = normal(self.corners);
+        (normal, normal.dot(origin - self.corners[0]))
+    }
+
+    fn rises(&self, origin: Vec3, up: Vec3) -> f64 {
+        self.corners.iter().map(|&corner| up.dot(corner - origin)).fold(f64::NEG_INFINITY, f64::max)
     }
 
     /// The weights of its second and third corner.
@@ -118,6 +121,10 @@ impl Surface for Triangle {
 
     fn distance(&self, point: Vec3) -> f64 {
         distance(self.corners, point)
+    }
+
+    fn tessellate(&self, put: &mut dyn FnMut([Vec3; 3])) {
+        put(self.corners);
     }
 }
 
@@ -135,10 +142,6 @@ pub struct TriangleHit<L: Lanes> {
 /// as much.
 pub const SEEN: f64 = 6.0 / (1u64 << 53) as f64;
 
-/// How far outside of its box a triangle may be hit, relative to its distance: sixteen roundings, [`SEEN`] and those of the
-/// distances to the sides of the box. The boxes of the tree have room for more than this.
-const SLACK: f64 = 1.0 / (1u64 << 49) as f64;
-
 /// Meets a ray with a triangle, from either side, edges included. `origin` and `vertices` are permuted as `heading` is; the
 /// direction need not be of unit length. A triangle without area is not hit.
 #[inline(always)]
@@ -152,12 +155,11 @@ pub fn intersect<L: Lanes>(origin: Vec3<L>, heading: &Heading<L>, vertices: [Vec
     if !inside.any() {
         return TriangleHit { t: zero, meets: inside };
     }
-    let n = area_vector(vertices);
-    let t = n.dot(corners[0]) / n.dot(heading.dir);
-    let [enter, leave] = box_along(heading, corners);
-    // 0/0 for a triangle without area, and for a ray that starts in its plane and stays there.
-    let meets = inside & !edges.area().eq(zero) & around_origin(seen) & t.eq(t) & enter.le(leave);
-    TriangleHit { t: t.max(enter).min(leave), meets }
+    let [a, b, c] = corners;
+    let low = Vec3::new(a.x.min(b.x).min(c.x), a.y.min(b.y).min(c.y), a.z.min(b.z).min(c.z));
+    let high = Vec3::new(a.x.max(b.x).max(c.x), a.y.max(b.y).max(c.y), a.z.max(b.z).max(c.z));
+    let (t, is_there) = meet_plane(heading, area_vector(vertices), a, low, high);
+    TriangleHit { t, meets: inside & !edges.area().eq(zero) & around_origin(seen) & is_there }
 }
 
 /// The weights of the corners at the point where a line meets a triangle, which they are good for as far as it is round. Of no meaning
@@ -261,22 +263,6 @@ fn around_origin<L: Lanes>([a, b, c]: [[L; 2]; 3]) -> L::Mask {
     let [low_x, low_y] = [a[0].min(b[0]).min(c[0]), a[1].min(b[1]).min(c[1])];
     let [high_x, high_y] = [a[0].max(b[0]).max(c[0]), a[1].max(b[1]).max(c[1])];
     low_x.le(zero) & high_x.ge(zero) & low_y.le(zero) & high_y.ge(zero)
-}
-
-/// Where a ray enters and leaves the box of three points, seen from its origin, with [`SLACK`]: the slab test of the tree, by the same
-/// operations, so that its larger boxes are entered no later and left no earlier.
-#[inline(always)]
-fn box_along<L: Lanes>(heading: &Heading<L>, [a, b, c]: [Vec3<L>; 3]) -> [L; 2] {
-    let (low_x, high_x) = (a.x.min(b.x).min(c.x), a.x.max(b.x).max(c.x));
-    let (low_y, high_y) = (a.y.min(b.y).min(c.y), a.y.max(b.y).max(c.y));
-    let (low_z, high_z) = (a.z.min(b.z).min(c.z), a.z.max(b.z).max(c.z));
-    let far = high_x.max(-low_x).max(high_y.max(-low_y)).max(high_z.max(-low_z));
-    let slack = L::splat(SLACK) * far;
-    let i = heading.inverse;
-    let (x0, x1) = ((low_x - slack) * i.x, (high_x + slack) * i.x);
-    let (y0, y1) = ((low_y - slack) * i.y, (high_y + slack) * i.y);
-    let (z0, z1) = ((low_z - slack) * i.z, (high_z + slack) * i.z);
-    [x0.min(x1).max(y0.min(y1)).max(z0.min(z1)), x0.max(x1).min(y0.max(y1)).min(z0.max(z1))]
 }
 
 /// Unit normal by the right-hand rule; not finite where the triangle has no area.

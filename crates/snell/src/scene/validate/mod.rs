@@ -91,6 +91,7 @@ pub fn validate(scene: &Scene) -> Result<Vec<Warning>, Problems> {
     shape::meshes(scene, &mut found);
     shape::planes(scene, &mut found);
     shape::boxes(scene, &mut found);
+    shape::discs(scene, &mut found);
     shape::lathes(scene, &mut found);
     material::indices(scene, &mut found);
     only_whitted(scene, &mut found);
@@ -152,6 +153,7 @@ fn only_whitted(scene: &Scene, found: &mut Findings) {
     unused(place!["render", "min_throughput"], scene.render.min_throughput != super::MIN_THROUGHPUT);
     let sides = scene.meshes.iter().map(|m| &m.inside).enumerate().map(|(i, inside)| ("mesh", i, inside));
     let sides = sides.chain(scene.planes.iter().enumerate().map(|(i, p)| ("plane", i, &p.inside)));
+    let sides = sides.chain(scene.discs.iter().enumerate().map(|(i, d)| ("disc", i, &d.inside)));
     for (kind, i, inside) in sides.chain(scene.lathes.iter().enumerate().map(|(i, l)| ("lathe", i, &l.inside))) {
         unused(place![kind, i, "inside"], inside.is_some());
     }

@@ -25,8 +25,9 @@ pub(super) fn names(scene: &Scene, found: &mut Findings) {
     let meshes = scene.meshes.iter().map(|m| &m.name).enumerate().map(|(i, name)| ("mesh", i, name));
     let planes = scene.planes.iter().map(|p| &p.name).enumerate().map(|(i, name)| ("plane", i, name));
     let boxes = scene.boxes.iter().map(|b| &b.name).enumerate().map(|(i, name)| ("box", i, name));
+    let discs = scene.discs.iter().map(|d| &d.name).enumerate().map(|(i, name)| ("disc", i, name));
     let lathes = scene.lathes.iter().map(|l| &l.name).enumerate().map(|(i, name)| ("lathe", i, name));
-    for (kind, i, name) in lights.chain(spheres).chain(meshes).chain(planes).chain(boxes).chain(lathes) {
+    for (kind, i, name) in lights.chain(spheres).chain(meshes).chain(planes).chain(boxes).chain(discs).chain(lathes) {
         if let Some(name) = name {
             look(place![kind, i, "name"], name);
         }

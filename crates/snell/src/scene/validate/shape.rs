@@ -112,13 +112,17 @@ fn inline_mesh(mesh: &Mesh, i: usize, found: &mut Findings) {
     }
 }
 
+fn normal(found: &mut Findings, at: Vec<Step>, normal: [f64; 3]) {
+    if found.numbers(&at, &normal) && !Vec3::from(normal).unit().is_finite() {
+        found.problem(at, "normal is (0, 0, 0), or too short to be one", "[0, 1, 0] looks up");
+    }
+}
+
 pub(super) fn planes(scene: &Scene, found: &mut Findings) {
     for (i, plane) in scene.planes.iter().enumerate() {
         let at = |key: &str| place!["plane", i, key];
         found.numbers(&at("center"), &plane.center);
-        if found.numbers(&at("normal"), &plane.normal) && !Vec3::from(plane.normal).unit().is_finite() {
-            found.problem(at("normal"), "normal is (0, 0, 0), or too short to be one", "[0, 1, 0] looks up");
-        }
+        normal(found, at("normal"), plane.normal);
         for size in plane.size {
             found.positive(at("size"), size, "a width or height", "");
         }
@@ -138,6 +142,18 @@ pub(super) fn boxes(scene: &Scene, found: &mut Findings) {
         }
         known_material(scene, found, at("material"), &cuboid.material);
         placed(found, "box", i, &cuboid.transform, &cuboid.instances);
+    }
+}
+
+pub(super) fn discs(scene: &Scene, found: &mut Findings) {
+    for (i, disc) in scene.discs.iter().enumerate() {
+        let at = |key: &str| place!["disc", i, key];
+        found.numbers(&at("center"), &disc.center);
+        normal(found, at("normal"), disc.normal);
+        found.positive(at("radius"), disc.radius, "a radius", "");
+        known_material(scene, found, at("material"), &disc.material);
+        interface(scene, found, "disc", i, (disc.inside.as_ref(), disc.outside.as_ref()));
+        placed(found, "disc", i, &disc.transform, &disc.instances);
     }
 }
 

@@ -1,4 +1,4 @@
-//! Shapes that are made of triangles: planes, boxes, and what a lathe makes.
+//! Shapes that a few numbers describe: planes, boxes, discs, and what a lathe makes.
 
 use super::shape::is_zero;
 use super::{Mesh, Transform};
@@ -59,6 +59,37 @@ pub struct Cuboid {
     pub instances: Vec<Vec<Transform>>,
 }
 
+/// A disc, or with a `transform` that stretches it an ellipse.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Disc {
+    /// Its name, for messages and explanations.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
+    /// Its middle.
+    #[serde(default)]
+    pub center: [f64; 3],
+    /// Where its front looks, of any length.
+    #[serde(default = "up")]
+    pub normal: [f64; 3],
+    /// Its radius, above 0.
+    pub radius: f64,
+    /// Name of its material.
+    pub material: String,
+    /// `whitted`: the material of what is behind it, as for meshes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub inside: Option<String>,
+    /// `whitted`: with `inside`, the material of what it looks at.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub outside: Option<String>,
+    /// Steps that put it in its place, one after the other.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub transform: Vec<Transform>,
+    /// Places where it stands, as for meshes.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub instances: Vec<Vec<Transform>>,
+}
+
 /// What turns around the y axis: bottles, lenses, bowls.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -99,10 +130,6 @@ fn segments() -> u32 {
     64
 }
 
-fn named(name: Option<&String>, kind: &str, index: usize) -> String {
-    name.cloned().unwrap_or_else(|| format!("{kind} {}", index + 1))
-}
-
 impl Plane {
     /// A plane without a name, in one place.
     pub fn new(center: [f64; 3], normal: [f64; 3], size: [f64; 2], material: &str) -> Self {
@@ -118,41 +145,13 @@ impl Plane {
             instances: Vec::new(),
         }
     }
-
-    /// The mesh of the plane number `index` of a scene.
-    pub(crate) fn mesh(&self, index: usize) -> Mesh {
-        Mesh {
-            name: Some(named(self.name.as_ref(), "plane", index)),
-            geometry: Some(Arc::new(tessellate::rectangle(self.center.into(), self.normal.into(), self.size))),
-            material: Some(self.material.clone()),
-            inside: self.inside.clone(),
-            outside: self.outside.clone(),
-            transform: self.transform.clone(),
-            instances: self.instances.clone(),
-            ..Mesh::default()
-        }
-    }
-}
-
-impl Cuboid {
-    /// The mesh of the box number `index` of a scene.
-    pub(crate) fn mesh(&self, index: usize) -> Mesh {
-        Mesh {
-            name: Some(named(self.name.as_ref(), "box", index)),
-            geometry: Some(Arc::new(tessellate::cuboid(self.min.into(), self.max.into()))),
-            material: Some(self.material.clone()),
-            transform: self.transform.clone(),
-            instances: self.instances.clone(),
-            ..Mesh::default()
-        }
-    }
 }
 
 impl Lathe {
     /// The mesh of the lathe number `index` of a scene.
     pub(crate) fn mesh(&self, index: usize) -> Mesh {
         Mesh {
-            name: Some(named(self.name.as_ref(), "lathe", index)),
+            name: Some(self.name.clone().unwrap_or_else(|| format!("lathe {}", index + 1))),
             geometry: Some(Arc::new(tessellate::lathe(&self.profile, self.segments))),
             smooth_angle: self.smooth_angle,
             material: Some(self.material.clone()),

@@ -1,0 +1,225 @@
+//! From the planes, boxes and discs of a scene to shapes of the world: one primitive for each place of each.
+
+use super::mesh::{MaterialIds, Parts, Which, nothing_goes_through, put_sparse, refusal};
+use super::solid::MeshSolids;
+use super::{NO_SOLID, Object, Solid, World};
+use crate::geometry::shape::{Cuboid, Disc, Rectangle, Surface};
+use crate::geometry::{Affine, TriangleMesh};
+use crate::scene::{Integrator, LARGEST_NUMBER, Problem, Scene, Step, Transform, Warning, WarningCode, whole_map};
+
+/// What is said of a shape besides where it is.
+struct About<'a> {
+    which: Which,
+    integrator: Integrator,
+    name: Option<&'a String>,
+    material: &'a str,
+    inside: Option<&'a String>,
+    outside: Option<&'a String>,
+    transform: &'a [Transform],
+    instances: &'a [Vec<Transform>],
+}
+
+/// A shape that stays one of its kind under every map.
+trait Placeable: Surface + Copy {
+    fn under(&self, map: &Affine) -> Self;
+    /// Is there anything to be hit?
+    fn has_size(&self) -> bool;
+    /// Does it enclose something?
+    fn is_solid() -> bool;
+}
+
+impl Placeable for Rectangle {
+    fn under(&self, map: &Affine) -> Self {
+        self.under(map)
+    }
+    fn has_size(&self) -> bool {
+        self.has_area()
+    }
+    fn is_solid() -> bool {
+        false
+    }
+}
+
+impl Placeable for Cuboid {
+    fn under(&self, map: &Affine) -> Self {
+        self.under(map)
+    }
+    fn has_size(&self) -> bool {
+        self.has_volume()
+    }
+    fn is_solid() -> bool {
+        true
+    }
+}
+
+impl Placeable for Disc {
+    fn under(&self, map: &Affine) -> Self {
+        self.under(map)
+    }
+    fn has_size(&self) -> bool {
+        self.has_area()
+    }
+    fn is_solid() -> bool {
+        false
+    }
+}
+
+impl World {
+    /// Adds all of them, in the order of their kinds.
+    pub(super) fn add_shapes(
+        &mut self,
+        scene: &Scene,
+        material_ids: &MaterialIds<'_>,
+        parts: &mut Parts,
+    ) -> Result<(), Problem> {
+        for (i, plane) in scene.planes.iter().enumerate() {
+            let about = About {
+                which: ("plane", i),
+                integrator: scene.render.integrator,
+                name: plane.name.as_ref(),
+                material: &plane.material,
+                inside: plane.inside.as_ref(),
+                outside: plane.outside.as_ref(),
+                transform: &plane.transform,
+                instances: &plane.instances,
+            };
+            let shape = Rectangle::new(plane.center.into(), plane.normal.into(), plane.size);
+            self.add_shape(&about, shape, material_ids, &mut parts.rectangles)?;
+        }
+        for (i, cuboid) in scene.boxes.iter().enumerate() {
+            let about = About {
+                which: ("box", i),
+                integrator: scene.render.integrator,
+                name: cuboid.name.as_ref(),
+                material: &cuboid.material,
+                inside: None,
+                outside: None,
+                transform: &cuboid.transform,
+                instances: &cuboid.instances,
+            };
+            self.add_shape(
+                &about,
+                Cuboid::new(cuboid.min.into(), cuboid.max.into()),
+                material_ids,
+                &mut parts.cuboids,
+            )?;
+        }
+        for (i, disc) in scene.discs.iter().enumerate() {
+            let about = About {
+                which: ("disc", i),
+                integrator: scene.render.integrator,
+                name: disc.name.as_ref(),
+                material: &disc.material,
+                inside: disc.inside.as_ref(),
+                outside: disc.outside.as_ref(),
+                transform: &disc.transform,
+                instances: &disc.instances,
+            };
+            let shape = Disc::new(disc.center.into(), disc.normal.into(), disc.radius);
+            self.add_shape(&about, shape, material_ids, &mut parts.discs)?;
+        }
+        Ok(())
+    }
+
+    /// Adds a shape in all of its places.
+    fn add_shape<S: Placeable>(
+        &mut self,
+        about: &About<'_>,
+        shape: S,
+        material_ids: &MaterialIds<'_>,
+        list: &mut Vec<S>,
+    ) -> Result<(), Problem> {
+        let (kind, index) = about.which;
+        let place = |key: &str| vec![Step::from(kind), Step::from(index), Step::from(key)];
+        let name = about.name.cloned().unwrap_or_else(|| format!("{kind} {}", index + 1));
+        let material = material_ids.get(about.material).copied().unwrap_or(0);
+        let own = shape.under(&whole_map(about.transform));
+        let (key, places) = if about.instances.is_empty() {
+            ("transform", vec![own])
+        } else {
+            ("instances", about.instances.iter().map(|steps| own.under(&whole_map(steps))).collect())
+        };
+        for placed in places {
+            let bounds = placed.bounds();
+            let farthest = bounds.min.length().max(bounds.max.length());
+            let problem = |message: String| Problem { place: place(key), message, help: None, remedy: None };
+            if farthest.is_nan() || farthest > LARGEST_NUMBER {
+                return Err(problem(format!("`{name}` ends up beyond 1e15")));
+            }
+            let has_size = placed.has_size();
+            if !has_size && (S::is_solid() || key == "instances") {
+                return Err(problem(format!("`{name}` is scaled by 0 here")));
+            }
+            let first = self.surfaces.material_of.len() as u32;
+            self.objects.push(Object { name: name.clone(), first, count: u32::from(has_size) });
+            if !has_size {
+                let message = format!("`{name}` has no area, and is left out");
+                self.warnings.push(Warning { code: WarningCode::DegenerateFaces, place: place(key), message });
+                continue;
+            }
+            let refused = |problem| Problem { place: place("material"), ..problem };
+            let [behind, front] =
+                self.sides_of_shape(&name, about, &placed, material, material_ids).map_err(refused)?;
+            self.surfaces.material_of.push(material);
+            put_sparse(&mut self.surfaces.interior_of, first as usize, behind, NO_SOLID);
+            put_sparse(&mut self.surfaces.exterior_of, first as usize, front, NO_SOLID);
+            list.push(placed);
+        }
+        if self.materials[material as usize].is_transparent() {
+            self.warn_not_refracted(&name, place("material"), about.integrator);
+        }
+        Ok(())
+    }
+
+    /// The solids behind a shape and in front of it.
+    fn sides_of_shape<S: Placeable>(
+        &mut self,
+        name: &str,
+        about: &About<'_>,
+        shape: &S,
+        material: u32,
+        material_ids: &MaterialIds<'_>,
+    ) -> Result<[u32; 2], Problem> {
+        if !self.refracts(material) {
+            return match about.inside {
+                Some(_) if self.has_media => Err(nothing_goes_through(name)),
+                _ => Ok([NO_SOLID; 2]),
+            };
+        }
+        if about.inside.is_some() {
+            let mut side = |name: Option<&String>| {
+                let material = name.and_then(|name| material_ids.get(name.as_str()));
+                material.map_or(NO_SOLID, |&material| self.medium_between_faces(material, shape.bounds()))
+            };
+            return Ok([side(about.inside), side(about.outside)]);
+        }
+        let medium = self.medium_of(material);
+        if !S::is_solid() {
+            let mut mesh = TriangleMesh::default();
+            shape.tessellate(&mut |corners| {
+                let number = corners.map(|corner| {
+                    let known = mesh.vertices.iter().position(|vertex| *vertex == corner);
+                    known.unwrap_or_else(|| {
+                        mesh.vertices.push(corner);
+                        mesh.vertices.len() - 1
+                    }) as u32
+                });
+                mesh.faces.push(number);
+            });
+            let why_not = MeshSolids::of(&mesh, medium).err();
+            let message = format!("`{name}` is transparent but not a solid: {}", why_not.unwrap_or_default());
+            let help = "give its material a `thickness` for a thin pane, or name the media on both sides with `inside` and `outside`";
+            return Err(refusal(message, help, None));
+        }
+        let number = self.solids.len() as u32;
+        self.solids.push(Solid {
+            medium,
+            inward: false,
+            touches: false,
+            between_faces_of: None,
+            primitive: self.surfaces.material_of.len() as u32,
+            bounds: shape.bounds(),
+        });
+        Ok([number, NO_SOLID])
+    }
+}
