@@ -562,7 +562,7 @@ fn no_ray_is_lost_in_boxes_of_glass() {
                     -2.0 * size,
                 );
                 let world = World::new(&scene).unwrap();
-                let rendered = render(&world, &Options::default()).unwrap();
+                let rendered = render(&world, &Settings::of(&scene), &Options::default()).unwrap();
                 rays += rendered.statistics.depth.iter().sum::<u64>();
                 // Far away a box thinner than the roundings of its place is in any order with what is beside it.
                 if offset == 0.0 || thin > 1e-3 {

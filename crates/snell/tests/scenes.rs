@@ -72,7 +72,7 @@ fn a_transparent_sheet_needs_a_thickness() {
     let mut scene = dark_room(1);
     glass(&mut scene, "glass", 1.5, 0);
     scene.planes.push(Plane::new([0.0; 3], [0.0, 0.0, 1.0], [8.0, 4.0], "glass"));
-    let problem = World::new(&scene).unwrap_err().remove(0);
+    let problem = World::new(&scene).unwrap_err()[0].clone();
     let message = "`plane 1` is transparent but not a solid: it is open along 4 edges, the first from";
     assert!(problem.message.starts_with(message), "{problem}");
     scene.materials["glass"].thickness = Some(0.01);
