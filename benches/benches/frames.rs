@@ -14,7 +14,7 @@ fn frames(c: &mut Criterion) {
     for name in ["default", "flake:4", "knot"] {
         let scene = scenes::find(name, SIZE).unwrap_or_else(|e| unreachable!("{e}"));
         let (world, _) = build(&scene, 1).unwrap_or_else(|e| unreachable!("{e}"));
-        let settings = Settings::of(&scene);
+        let settings = Settings::from(&scene);
         group.throughput(Throughput::Elements(u64::from(SIZE * SIZE)));
         group.bench_function(BenchmarkId::from_parameter(name), |b| {
             b.iter(|| render(&world, &settings, &Options { threads: 1, ..Options::default() }));

@@ -9,7 +9,7 @@ pub mod rays;
 pub mod scenes;
 pub mod spheres;
 
-use snell::geometry::bvh::{Bvh, MARGIN, Quality, Shapes};
+use snell::geometry::bvh::{self, MARGIN, Quality, Shapes};
 use snell::geometry::shape::Triangles;
 use snell::geometry::{Bounds, Sphere};
 use snell::render::{LaneWidth, Options};
@@ -41,7 +41,7 @@ pub fn build(scene: &Scene, threads: usize) -> Result<(World, Duration), String>
     let shapes = Shapes { spheres: &spheres, triangles, ..Shapes::default() };
     let start = Instant::now();
     let everything = (0..shapes.count()).map(|i| shapes.bounds(i)).fold(Bounds::EMPTY, Bounds::union);
-    let tree = Bvh::build(&shapes, vec![], MARGIN * everything.diagonal(), Quality::Good, threads);
+    let tree = bvh::build(&shapes, vec![], MARGIN * everything.diagonal(), Quality::Good, threads);
     let time = start.elapsed();
     drop(black_box(tree));
     Ok((World::build(scene, Quality::Good, threads).map_err(|problems: Problems| problems.to_string())?, time))

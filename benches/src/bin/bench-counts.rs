@@ -82,7 +82,7 @@ fn main() -> Result<(), String> {
             let scene = scene(name)?;
             let world = world(&scene)?;
             let lanes = lanes.parse().ok().and_then(LaneWidth::of).ok_or("lanes are 1, 2, 4 or 8")?;
-            let (settings, options) = (Settings::of(&scene), Options { threads: 1, lanes, ..Options::default() });
+            let (settings, options) = (Settings::from(&scene), Options { threads: 1, lanes, ..Options::default() });
             count_instructions_of(&mut || {
                 render(&world, &settings, &options)
                     .map(|picture| drop(black_box(picture)))

@@ -87,7 +87,7 @@ impl Worker {
         let key = (name.to_owned(), size);
         if !self.worlds.contains_key(&key) {
             let scene = scenes::find(name, size)?;
-            self.worlds.insert(key.clone(), (build(&scene, 1)?.0, Settings::of(&scene)));
+            self.worlds.insert(key.clone(), (build(&scene, 1)?.0, Settings::from(&scene)));
         }
         let (world, settings) = self.worlds.get(&key).ok_or("the scene is gone")?;
         let settings = Settings { max_depth: depth, ..settings.clone() };

@@ -252,7 +252,7 @@ fn one(name: &str, args: &RenderArgs, output: &Path, inputs: &mut Vec<PathBuf>) 
         cancel: Some(&CANCEL),
         ..Options::default()
     };
-    let settings = Settings::of(&loaded.scene);
+    let settings = Settings::from(&loaded.scene);
     let rendered = render(&world, &settings, &options).map_err(|e| {
         let code = if matches!(e, RenderError::CropOutside { .. }) { USAGE } else { SCENE };
         Failure::new(code, Report::error(e.to_string()))
@@ -286,7 +286,7 @@ fn one(name: &str, args: &RenderArgs, output: &Path, inputs: &mut Vec<PathBuf>) 
         }
         return Err(Failure { code, reports });
     }
-    let mut odd = rendered.statistics.warnings(&world, &settings);
+    let mut odd = snell::render::warnings(&rendered.statistics, &world, &settings);
     odd.extend(black_picture(&Names { world: &world, scene: &loaded.scene }, &rendered.film));
     summary(&recipe, &world, &settings, &rendered, &odd, args, &options, output, seconds);
     if !finished {

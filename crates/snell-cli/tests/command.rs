@@ -21,7 +21,7 @@ fn render(folder: &Path, arguments: &[&str]) {
 /// The film of a scene, by the library.
 fn film_of(scene: &snell::scene::Scene) -> snell::film::Film {
     let world = snell::world::World::new(scene).unwrap();
-    let settings = snell::render::Settings::of(scene);
+    let settings = snell::render::Settings::from(scene);
     snell::render::render(&world, &settings, &snell::render::Options::default()).unwrap().film
 }
 

@@ -14,7 +14,7 @@ use snell_test_scenes::lecture;
 
 /// The tree of a pixel of one sample.
 fn traced(scene: &Scene, world: &World, x: u32, y: u32) -> RayTree {
-    trace_pixel(world, &Settings::of(scene), x, y).unwrap().samples.remove(0)
+    trace_pixel(world, &Settings::from(scene), x, y).unwrap().samples.remove(0)
 }
 
 /// The objects that a pixel of a built-in scene shows, from the strongest refracted or direct contribution on.
@@ -74,7 +74,7 @@ fn the_prism_of_the_gallery_shows_the_colours_in_order() {
     scene.render.size = [320, 240];
     let world = World::new(&scene).unwrap();
     let crop = Some(snell::film::Crop { x: 90, y: 90, width: 80, height: 1 });
-    let row = render(&world, &Settings::of(&scene), &Options { crop, ..Options::default() }).unwrap().film.pixels;
+    let row = render(&world, &Settings::from(&scene), &Options { crop, ..Options::default() }).unwrap().film.pixels;
     let peak =
         |value: fn(&Rgb) -> f64| (0..row.len()).max_by(|&a, &b| value(&row[a]).total_cmp(&value(&row[b]))).unwrap();
     let (red, green, blue) = (peak(|c| c.r - c.g - c.b), peak(|c| c.g - c.r - c.b), peak(|c| c.b - c.r - c.g));
@@ -92,7 +92,7 @@ fn built_in_scenes_lose_little_light_or_say_so() {
         let mut scene = parse(&source, Syntax::Toml).unwrap();
         // The average over every eighth column and row is that of the whole picture but for 6 % of itself.
         scene.render.size = scene.render.size.map(|n| n / 8);
-        let rendered = render(&World::new(&scene).unwrap(), &Settings::of(&scene), &Options::default()).unwrap();
+        let rendered = render(&World::new(&scene).unwrap(), &Settings::from(&scene), &Options::default()).unwrap();
         let pixels = u64::from(scene.render.size[0]) * u64::from(scene.render.size[1]);
         let (share, says) = (
             rendered.statistics.lost.share(pixels * u64::from(scene.render.spp)),
@@ -225,7 +225,7 @@ fn the_brilliant_sends_light_back_with_fire() {
         }
     }
     assert!(up > 1.5 * down, "{up} up, {down} down");
-    let film = render(&look.world, &Settings::of(&look.scene), &Options::default()).unwrap().film;
+    let film = render(&look.world, &Settings::from(&look.scene), &Options::default()).unwrap().film;
     let colourful = |c: &&Rgb| {
         let [r, g, b] = c.to_array().map(|c| c.clamp(0.0, 1.0));
         r.max(g).max(b) - r.min(g).min(b) > 0.35

@@ -58,7 +58,7 @@ impl NativePicture {
         progress: Option<&Py<PyAny>>,
     ) -> PyResult<Self> {
         let started = Instant::now();
-        let (world, settings) = (ready.world(py)?, Settings::of(&ready.scene));
+        let (world, settings) = (ready.world(py)?, Settings::from(&ready.scene));
         let (rendered, stopped) = watched(py, threads, crop, progress, |options| render(world, &settings, options));
         let seconds = started.elapsed().as_secs_f64();
         match stopped {
@@ -73,7 +73,7 @@ impl NativePicture {
         };
         let Rendered { film, statistics } = rendered.map_err(failed)?;
         let black = black_picture(&Names { world, scene: &ready.scene }, &film);
-        let warnings = statistics.warnings(world, &settings).into_iter().chain(black);
+        let warnings = snell::render::warnings(&statistics, world, &settings).into_iter().chain(black);
         let text = |warning: Warning| format!("{warning}{}", errors::advice(warning.code));
         let warnings = warnings.map(|warning| (warning.code.code().to_owned(), text(warning))).collect();
         Ok(Self { film, ready, seconds, rays: statistics.rays.total(), warnings })
@@ -180,7 +180,7 @@ impl NativePicture {
 
     /// What the camera's rays met: depth, normal, number of the object; and the names of the objects.
     fn channels<'py>(&self, py: Python<'py>, progress: Option<Py<PyAny>>) -> PyResult<NativeChannels<'py>> {
-        let (world, settings) = (self.ready.world(py)?, Settings::of(&self.ready.scene));
+        let (world, settings) = (self.ready.world(py)?, Settings::from(&self.ready.scene));
         let crop = Some(self.film.crop);
         let work = watched(py, 0, crop, progress.as_ref(), |options| channels(world, &settings, options));
         let Channels { depth, normal, object } = unless_stopped(work)?;
@@ -196,7 +196,7 @@ impl NativePicture {
 
     /// How many surfaces the rays of each pixel met.
     fn hits<'py>(&self, py: Python<'py>, progress: Option<Py<PyAny>>) -> PyResult<Bound<'py, PyArray2<u32>>> {
-        let (world, settings) = (self.ready.world(py)?, Settings::of(&self.ready.scene));
+        let (world, settings) = (self.ready.world(py)?, Settings::from(&self.ready.scene));
         let crop = Some(self.film.crop);
         let work = watched(py, 0, crop, progress.as_ref(), |options| hits(world, &settings, options));
         shaped(py, self.shape(), unless_stopped(work)?)

@@ -24,25 +24,25 @@
 //!     ..Scene::new(Render::new(Integrator::Lecture, [32, 32]), camera)
 //! };
 //! let world = snell::world::World::new(&scene)?;
-//! let rendered = render(&world, &Settings::of(&scene), &Options::default())?;
+//! let rendered = render(&world, &Settings::from(&scene), &Options::default())?;
 //! let center = rendered.film.pixels[16 * 32 + 16];
 //! assert!(center.r > 0.4 && center.g == 0.0, "{center:?}");
 //! # Ok(())
 //! # }
 //! ```
 
-mod color;
 pub mod explain;
 pub mod film;
 pub mod geometry;
-mod integrate;
 pub mod lanes;
 mod memory;
 pub mod optics;
 pub mod rays;
 pub mod render;
 pub mod scene;
-pub mod texture;
 mod threads;
-pub mod trace;
 pub mod world;
+
+pub use snell_kernels::{texture, trace};
+
+use snell_kernels::{color, integrate, settings, stage};

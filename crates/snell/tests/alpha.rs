@@ -383,7 +383,7 @@ fn what_lies_on_something_hides_its_share_of_it() {
                 assert_eq!(second[0].throughput, Rgb::gray(0.5));
             }
             let statistics =
-                render(&World::new(&scene).unwrap(), &Settings::of(&scene), &Options::default()).unwrap().statistics;
+                render(&World::new(&scene).unwrap(), &Settings::from(&scene), &Options::default()).unwrap().statistics;
             assert_eq!(statistics.stray.count, 0);
         }
     }

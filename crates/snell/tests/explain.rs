@@ -60,7 +60,7 @@ fn folded(explanation: &Explanation) -> [f64; 3] {
 
 fn adds_up(name: &str, scene: &Scene) {
     let world = World::new(scene).unwrap();
-    let film = render(&world, &Settings::of(scene), &Options::default()).unwrap().film;
+    let film = render(&world, &Settings::from(scene), &Options::default()).unwrap().film;
     let width = world.camera.size[0];
     for (number, pixel) in (0u32..).zip(&film.pixels) {
         let (explanation, _) = explain(&world, scene, name, number % width, number / width).unwrap();
@@ -125,7 +125,7 @@ fn the_bounds_hold_ten_levels_deeper() {
         let world = World::new(&scene).unwrap();
         let mut deep = scene.clone();
         deep.render.max_depth = 12;
-        let deeper = render(&World::new(&deep).unwrap(), &Settings::of(&deep), &Options::default()).unwrap().film;
+        let deeper = render(&World::new(&deep).unwrap(), &Settings::from(&deep), &Options::default()).unwrap().film;
         let width = world.camera.size[0];
         let mut used = 0.0f64;
         for (number, pixel) in (0u32..).zip(&deeper.pixels) {
@@ -150,7 +150,7 @@ fn the_bounds_hold_ten_levels_deeper() {
 fn layers_add_up_to_the_picture() {
     for (name, scene) in scenes("gallery/bubbles", 24).into_iter().chain(scenes("lecture/default", 32)) {
         let world = World::new(&scene).unwrap();
-        let film = render(&world, &Settings::of(&scene), &Options::default()).unwrap().film;
+        let film = render(&world, &Settings::from(&scene), &Options::default()).unwrap().film;
         let split = layers(&world, &scene, 5, &Options::default()).unwrap();
         assert_eq!(split.picture, film.pixels, "{name}");
         let left = split.rest.iter().any(|c| *c != Rgb::gray(0.0));
@@ -162,7 +162,7 @@ fn layers_add_up_to_the_picture() {
             let (sum, count) = all.fold((Rgb::gray(0.0), 0.0), |(sum, count), c| (sum + c, count + 1.0));
             let trace = trace_pixel(
                 &world,
-                &Settings::of(&scene),
+                &Settings::from(&scene),
                 i as u32 % film.width() as u32,
                 i as u32 / film.width() as u32,
             )
@@ -188,7 +188,7 @@ fn an_object_is_found_in_all_pixels_that_show_it() {
     let names = Names { world: &world, scene: &scene };
     let mut counts: BTreeMap<Path, u64> = BTreeMap::new();
     for number in 0..96 * 96 {
-        let trace = trace_pixel(&world, &Settings::of(&scene), number % 96, number / 96).unwrap();
+        let trace = trace_pixel(&world, &Settings::from(&scene), number % 96, number / 96).unwrap();
         let tree = &trace.samples[0];
         let seen = (0..tree.nodes.len()).filter(|&n| tree.nodes[n].contribution != Rgb::gray(0.0));
         let mut paths: Vec<Path> = seen.map(|n| Path::of(&names, tree, n)).filter(|path| path.end == "green").collect();
@@ -213,7 +213,7 @@ fn channels_agree_with_explanations() {
     for (name, scene) in scenes("lecture/default", 40).into_iter().chain(scenes("gallery/ice", 24)) {
         let world = World::new(&scene).unwrap();
         let part = Crop { x: 3, y: 5, width: 20, height: 17 };
-        let (settings, options) = (Settings::of(&scene), Options { crop: Some(part), ..Options::default() });
+        let (settings, options) = (Settings::from(&scene), Options { crop: Some(part), ..Options::default() });
         let (found, met) = (channels(&world, &settings, &options).unwrap(), hits(&world, &settings, &options).unwrap());
         let mut missed = 0;
         for i in 0..(20 * 17) as usize {
@@ -347,7 +347,7 @@ material = "air"
     let scene = load::load_text(source, kind, std::path::Path::new("."), &options).unwrap().scene;
     let world = World::new(&scene).unwrap();
     let names = Names { world: &world, scene: &scene };
-    let trace = trace_pixel(&world, &Settings::of(&scene), 1, 1).unwrap();
+    let trace = trace_pixel(&world, &Settings::from(&scene), 1, 1).unwrap();
     let tree = &trace.samples[0];
     let strongest =
         (0..tree.nodes.len()).max_by(|&a, &b| tree.nodes[a].contribution.g.total_cmp(&tree.nodes[b].contribution.g));

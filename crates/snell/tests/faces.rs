@@ -169,7 +169,7 @@ fn interfaces_show_what_solids_show() {
     let (a, b) = (picture(&solids), picture(&split));
     assert!(alike(&a, &b) * 1000 >= a.pixels.len() * 999, "{} of {}", alike(&a, &b), a.pixels.len());
     let statistics =
-        render(&World::new(&split).unwrap(), &Settings::of(&split), &Options::default()).unwrap().statistics;
+        render(&World::new(&split).unwrap(), &Settings::from(&split), &Options::default()).unwrap().statistics;
     assert_eq!(statistics.stray.count, 0);
 }
 
@@ -198,7 +198,7 @@ fn an_overlap_without_a_priority_is_told() {
         ball(&mut scene, [center, 0.0, 0.0], radius, "other");
         scene.spheres[1].name = Some("second".to_owned());
         let world = World::new(&scene).unwrap();
-        let found = render(&world, &Settings::of(&scene), &Options::default()).unwrap().statistics.overlaps;
+        let found = render(&world, &Settings::from(&scene), &Options::default()).unwrap().statistics.overlaps;
         found.first.map(|overlap| {
             let mut names = overlap.primitives.map(|p| world.object_of(p).unwrap().name.clone());
             names.sort();
@@ -243,7 +243,7 @@ fn a_camera_under_an_interface_is_under_water() {
     let (r, tau) = ((0.33f64 / 2.33) * (0.33 / 2.33), libm::exp(-0.3));
     assert!((tree.nodes[0].eta - 1.33).abs() < 1e-15);
     let statistics =
-        render(&World::new(&scene).unwrap(), &Settings::of(&scene), &Options::default()).unwrap().statistics;
+        render(&World::new(&scene).unwrap(), &Settings::from(&scene), &Options::default()).unwrap().statistics;
     assert_eq!(statistics.stray.count, 0, "the sea has no other shore");
     let out = tree.nodes.iter().find(|n| n.kind == RayKind::Refracted).unwrap();
     // A few roundings.
@@ -273,7 +273,7 @@ fn a_mirrored_interface_is_what_it_was() {
     let mut film = |inside: Option<&str>, factor: f64| {
         scene.lathes = vec![lathe(inside, factor)];
         let world = World::new(&scene).unwrap();
-        let rendered = render(&world, &Settings::of(&scene), &Options::default()).unwrap();
+        let rendered = render(&world, &Settings::from(&scene), &Options::default()).unwrap();
         assert_eq!(rendered.statistics.stray.count, 0, "{inside:?} {factor}");
         rendered.film
     };

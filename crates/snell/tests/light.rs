@@ -142,7 +142,7 @@ fn aim(scene: &Scene, world: &mut World, eye: Vec3, at: Vec3, size: f64) {
         [-size, size, -size, size],
         -0.5 * (at - eye).length(),
     );
-    world.camera = CameraFrame::new(&camera, &scene.render);
+    world.stage.camera = camera.frame(&scene.render);
 }
 
 /// What is seen there.
@@ -481,8 +481,8 @@ fn glass_of_slivers_has_no_holes() {
 /// What W007 says of a picture.
 fn strays(scene: &Scene) -> Option<String> {
     let world = World::new(scene).unwrap();
-    let statistics: Statistics = render(&world, &Settings::of(scene), &Options::default()).unwrap().statistics;
-    let warnings = statistics.warnings(&world, &Settings::of(scene));
+    let statistics: Statistics = render(&world, &Settings::from(scene), &Options::default()).unwrap().statistics;
+    let warnings = snell::render::warnings(&statistics, &world, &Settings::from(scene));
     warnings.into_iter().find(|w| w.code == WarningCode::StrayExit).map(|w| w.message)
 }
 
@@ -512,7 +512,8 @@ fn glass_is_left_at_its_edges() {
                         let (radiance, tree) = traced(&scene, &world, 0, 0);
                         let whole = (radiance + tree.lost).r;
                         assert!((whole - 1.0).abs() < 1e-12, "{name}, {size} large, {offset} away: {whole} at {at:?}");
-                        let statistics = render(&world, &Settings::of(&scene), &Options::default()).unwrap().statistics;
+                        let statistics =
+                            render(&world, &Settings::from(&scene), &Options::default()).unwrap().statistics;
                         assert_eq!(statistics.stray.count, 0, "{name}, {size} large, {offset} away, at {at:?}");
                         aimed += 1;
                     }
@@ -562,7 +563,7 @@ fn no_ray_is_lost_in_boxes_of_glass() {
                     -2.0 * size,
                 );
                 let world = World::new(&scene).unwrap();
-                let rendered = render(&world, &Settings::of(&scene), &Options::default()).unwrap();
+                let rendered = render(&world, &Settings::from(&scene), &Options::default()).unwrap();
                 rays += rendered.statistics.depth.iter().sum::<u64>();
                 // Far away a box thinner than the roundings of its place is in any order with what is beside it.
                 if offset == 0.0 || thin > 1e-3 {

@@ -62,7 +62,7 @@ fn the_gears_of_the_standard_databases_refract() {
 
 /// With something refracted, and without an exit from anything that had not been entered: none of these meshes crosses itself.
 fn picture(scene: &Scene, name: &str) -> Rendered {
-    let rendered = render(&World::new(scene).unwrap(), &Settings::of(scene), &Options::default()).unwrap();
+    let rendered = render(&World::new(scene).unwrap(), &Settings::from(scene), &Options::default()).unwrap();
     let statistics = &rendered.statistics;
     assert!(statistics.rays.refracted > 50, "{name}: {:?}", statistics.rays);
     assert_eq!(statistics.stray.count, 0, "{name}: pixel {:?}", statistics.stray.first_pixel);

@@ -18,7 +18,7 @@ fn picture(scene: &Scene, options: &Options<'_>) -> Film {
 }
 
 fn film(world: &World, scene: &Scene, options: &Options<'_>) -> Film {
-    render(world, &Settings::of(scene), options).unwrap().film
+    render(world, &Settings::from(scene), options).unwrap().film
 }
 
 fn hash(film: &Film) -> String {
@@ -118,7 +118,7 @@ fn the_crowd_is_worth_tracing() {
     // Otherwise the test above proves nothing.
     let scene = crowd(Integrator::Lecture);
     let world = World::new(&scene).unwrap();
-    let rendered = render(&world, &Settings::of(&scene), &Options::default()).unwrap();
+    let rendered = render(&world, &Settings::from(&scene), &Options::default()).unwrap();
     let rays = rendered.statistics.rays;
     assert!(rays.mirror > 500 && rays.refracted > 20 && rays.shadow > 1000, "{rays:?}");
     assert!(rendered.statistics.lost.rays > 0, "{:?}", rendered.statistics);
@@ -129,7 +129,7 @@ fn the_hostile_scenes_are_worth_tracing_too() {
     for (name, scene) in hostile() {
         let world = World::new(&scene).unwrap();
         assert!(world.primitive_count() > 2000, "{name}");
-        let rendered = render(&world, &Settings::of(&scene), &Options::default()).unwrap();
+        let rendered = render(&world, &Settings::from(&scene), &Options::default()).unwrap();
         let rays = rendered.statistics.rays;
         assert!(rays.mirror > 200 && rays.shadow > 400, "{name}: {rays:?}");
         assert!(rays.refracted > 0 || scene.render.integrator == Integrator::Course2018, "{name}: {rays:?}");
@@ -155,19 +155,19 @@ fn a_crop_is_a_part_of_the_whole() {
         }
     }
     let outside = Crop { x: 30, y: 0, width: 11, height: 1 };
-    assert!(render(&world, &Settings::of(&scene), &Options { crop: Some(outside), ..Options::default() }).is_err());
+    assert!(render(&world, &Settings::from(&scene), &Options { crop: Some(outside), ..Options::default() }).is_err());
 }
 
 #[test]
 fn the_recorded_tree_of_every_pixel_adds_up_to_the_film() {
     for (name, scene) in first_light() {
         let world = World::new(&scene).unwrap();
-        let rendered = render(&world, &Settings::of(&scene), &Options::default()).unwrap();
+        let rendered = render(&world, &Settings::from(&scene), &Options::default()).unwrap();
         let mut rays = 0;
         let [width, height] = scene.render.size;
         for y in 0..height {
             for x in 0..width {
-                let pixel = trace_pixel(&world, &Settings::of(&scene), x, y).unwrap();
+                let pixel = trace_pixel(&world, &Settings::from(&scene), x, y).unwrap();
                 let [tree] = pixel.samples.as_slice() else { panic!("one sample, one tree") };
                 let film = rendered.film.pixels[(y * width + x) as usize];
                 assert_eq!((pixel.sum(), pixel.radiance), (film, film), "{name} at {x},{y}");
@@ -191,18 +191,18 @@ fn a_generation_that_is_split_changes_nothing() {
     let scene = hall_of_mirrors(12);
     let world = World::new(&scene).unwrap();
     let whole =
-        render(&world, &Settings::of(&scene), &Options { tile_size: 33, threads: 1, ..Options::default() }).unwrap();
+        render(&world, &Settings::from(&scene), &Options { tile_size: 33, threads: 1, ..Options::default() }).unwrap();
     let largest = whole.statistics.depth.iter().max().copied().unwrap();
     assert!(largest > 1 << 17, "one tile, a budget of 2^16 rays, and not split: {:?}", whole.statistics.depth);
     for (x, y) in [(12, 12), (5, 20), (18, 7)] {
-        let alone = trace_pixel(&world, &Settings::of(&scene), x, y).unwrap().radiance;
+        let alone = trace_pixel(&world, &Settings::from(&scene), x, y).unwrap().radiance;
         assert_eq!(alone, whole.film.pixels[(y * 24 + x) as usize]);
     }
-    let small = render(&world, &Settings::of(&scene), &Options { tile_size: 8, ..Options::default() }).unwrap();
+    let small = render(&world, &Settings::from(&scene), &Options { tile_size: 8, ..Options::default() }).unwrap();
     assert!(small.film == whole.film && small.statistics == whole.statistics);
     for lanes in LaneWidth::ALL {
         let split =
-            render(&world, &Settings::of(&scene), &Options { tile_size: 33, lanes, ..Options::default() }).unwrap();
+            render(&world, &Settings::from(&scene), &Options { tile_size: 33, lanes, ..Options::default() }).unwrap();
         assert!(split.film == whole.film && split.statistics == whole.statistics, "{lanes:?}");
     }
 }
@@ -218,7 +218,7 @@ fn cancelling_keeps_what_is_done() {
     let options = Options { threads: 1, progress: Some(&progress), cancel: Some(&cancel), ..Options::default() };
     // Into new memory, and into that of another picture, which must not shine through.
     let mut again = whole.clone();
-    render_into(&mut again, &world, &Settings::of(&scene), &options).unwrap();
+    render_into(&mut again, &world, &Settings::from(&scene), &options).unwrap();
     cancel.store(false, Ordering::Relaxed);
     for part in [picture(&scene, &options), again] {
         assert_eq!(part.finished.iter().filter(|&&f| f).count(), 2048);
@@ -237,7 +237,7 @@ fn a_film_is_used_again() {
     for options in [Options::default(), Options { crop, ..Options::default() }] {
         for scene in &scenes {
             let world = World::new(scene).unwrap();
-            if render_into(&mut film, &world, &Settings::of(scene), &options).is_ok() {
+            if render_into(&mut film, &world, &Settings::from(scene), &options).is_ok() {
                 assert!(film == picture(scene, &options));
             }
         }

@@ -237,7 +237,7 @@ fn at_scale((_, settings, view, objects): (&str, &str, &str, &str), factor: f64)
 fn shows_the_thing(scene: &Scene) -> bool {
     let world = World::new(scene).unwrap();
     let shown = (0..64 * 64).filter(|i| {
-        let pixel = snell::render::trace_pixel(&world, &snell::render::Settings::of(scene), i % 64, i / 64).unwrap();
+        let pixel = snell::render::trace_pixel(&world, &snell::render::Settings::from(scene), i % 64, i / 64).unwrap();
         let hit = pixel.samples[0].nodes[0].hit.as_ref();
         hit.and_then(|hit| world.object_of(hit.primitive)).is_some_and(|object| object.name == "thing")
     });

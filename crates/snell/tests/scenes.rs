@@ -110,10 +110,10 @@ fn samples_are_their_trees_mean() {
     for spp in [1, 3, 4] {
         scene.render.spp = spp;
         let world = World::new(&scene).unwrap();
-        let rendered = render(&world, &Settings::of(&scene), &Options::default()).unwrap();
+        let rendered = render(&world, &Settings::from(&scene), &Options::default()).unwrap();
         assert_eq!(rendered.statistics.rays.camera, u64::from(spp) * 144);
         for pixel in 0..144 {
-            let traced = trace_pixel(&world, &Settings::of(&scene), pixel % 12, pixel / 12).unwrap();
+            let traced = trace_pixel(&world, &Settings::from(&scene), pixel % 12, pixel / 12).unwrap();
             assert_eq!(traced.samples.len(), spp as usize);
             let film = rendered.film.pixels[pixel as usize];
             assert_eq!((traced.sum(), traced.radiance), (film, film));

@@ -19,7 +19,7 @@ fn glass(spp: u32) -> Scene {
 
 fn whole(scene: &Scene) -> (Film, Statistics) {
     let options = Options { threads: 1, ..Options::default() };
-    let rendered = render(&World::new(scene).unwrap(), &Settings::of(scene), &options).unwrap();
+    let rendered = render(&World::new(scene).unwrap(), &Settings::from(scene), &options).unwrap();
     (rendered.film, rendered.statistics)
 }
 
@@ -45,7 +45,7 @@ fn samples_in_any_parts_and_any_order_merge_to_the_bits_of_the_whole() {
         let scene = glass(spp);
         let (film, statistics) = whole(&scene);
         assert!(statistics.lost.rays > 0, "nothing is lost");
-        let (world, settings) = (World::new(&scene).unwrap(), Settings::of(&scene));
+        let (world, settings) = (World::new(&scene).unwrap(), Settings::from(&scene));
         for round in 0..6 {
             let (mut parts, mut first) = (Vec::new(), 0);
             while first < spp {
@@ -78,7 +78,7 @@ fn samples_in_any_parts_and_any_order_merge_to_the_bits_of_the_whole() {
 #[test]
 fn a_part_that_is_missing_or_there_twice_makes_no_picture() {
     let scene = glass(5);
-    let (world, settings) = (World::new(&scene).unwrap(), Settings::of(&scene));
+    let (world, settings) = (World::new(&scene).unwrap(), Settings::from(&scene));
     let part = |first: u32, end: u32| {
         accumulate(&world, &settings, &Options { samples: Some([first, end]), ..Options::default() }).unwrap()
     };
@@ -102,7 +102,7 @@ fn steps_from_coarse_to_fine_end_in_the_same_picture() {
     ] {
         let mut scene = lecture(name, 40);
         scene.render.spp = spp;
-        let (world, settings) = (World::new(&scene).unwrap(), Settings::of(&scene));
+        let (world, settings) = (World::new(&scene).unwrap(), Settings::from(&scene));
         let expected = render(&world, &settings, &Options { crop, ..Options::default() }).unwrap();
         for (coarsest, tiles, threads) in [(1, 1, 1), (8, 1, 1), (8, 3, 2), (64, 100, 2), (7, 2, 1)] {
             let passes = Passes::CoarseToFine { coarsest };
@@ -138,7 +138,7 @@ fn the_first_pass_already_fills_the_picture() {
     let mut scene = lecture("lecture/default", 40);
     scene.sky = None;
     scene.ambient = Rgb::gray(1.0);
-    let (world, settings) = (World::new(&scene).unwrap(), Settings::of(&scene));
+    let (world, settings) = (World::new(&scene).unwrap(), Settings::from(&scene));
     let full = render(&world, &settings, &Options::default()).unwrap().film;
     let passes = Passes::CoarseToFine { coarsest: 8 };
     let mut renderer = Renderer::new(&world, &settings, &Options { passes, ..Options::default() }).unwrap();
@@ -155,7 +155,7 @@ fn the_first_pass_already_fills_the_picture() {
 fn what_was_cancelled_goes_on_to_the_same_picture_and_statistics() {
     let scene = glass(3);
     let (film, statistics) = whole(&scene);
-    let (world, settings) = (World::new(&scene).unwrap(), Settings::of(&scene));
+    let (world, settings) = (World::new(&scene).unwrap(), Settings::from(&scene));
     for passes in [Passes::WholeTiles, Passes::CoarseToFine { coarsest: 4 }] {
         let (cancel, calls) = (AtomicBool::new(false), AtomicU32::new(0));
         // Every second tile tells the others to stop, wherever they are.
@@ -188,7 +188,7 @@ fn what_was_cancelled_goes_on_to_the_same_picture_and_statistics() {
 fn a_world_is_rendered_with_the_models_of_light_it_was_compiled_for() {
     let scene = lecture("lecture/default", 8);
     let world = World::new(&scene).unwrap();
-    let other = |integrator| Settings { integrator, ..Settings::of(&scene) };
+    let other = |integrator| Settings { integrator, ..Settings::from(&scene) };
     assert!(render(&world, &other(Integrator::Course2020), &Options::default()).is_ok());
     let refused = render(&world, &other(Integrator::Whitted), &Options::default()).unwrap_err();
     assert!(refused.to_string().contains("Whitted"), "{refused}");

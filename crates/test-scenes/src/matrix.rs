@@ -17,7 +17,7 @@ pub const TILE_SIZES: &[u32] = &[8, 16, 33];
 /// When the scene cannot be rendered.
 pub fn once(name: &str, scene: &Scene) -> String {
     let options = Options { threads: 1, ..Options::default() };
-    line(name, &rendered(&World::new(scene).unwrap(), &Settings::of(scene), &options))
+    line(name, &rendered(&World::new(scene).unwrap(), &Settings::from(scene), &options))
 }
 
 /// Renders a scene with all lanes, tiles and the `threads` asked for, and without the tree.
@@ -25,7 +25,7 @@ pub fn once(name: &str, scene: &Scene) -> String {
 /// # Panics
 /// When two of the pictures or their statistics differ, and says which.
 pub fn all_ways(name: &str, scene: &Scene, threads: &[usize]) -> String {
-    let (world, settings) = (World::new(scene).unwrap(), Settings::of(scene));
+    let (world, settings) = (World::new(scene).unwrap(), Settings::from(scene));
     let expected = rendered(&world, &settings, &Options { threads: 1, lanes: LaneWidth::One, ..Options::default() });
     let same = |world: &World, options: Options<'_>, tree: &str| {
         let actual = rendered(world, &settings, &options);

@@ -73,7 +73,7 @@ fn remove(scene: &mut Scene, object: &str) {
 }
 
 fn paths(asked: &Asked, x: u32, y: u32) -> Vec<(Path, Rgb)> {
-    trace_pixel(&asked.world, &Settings::of(&asked.loaded.scene), x, y)
+    trace_pixel(&asked.world, &Settings::from(&asked.loaded.scene), x, y)
         .map_or(Vec::new(), |trace| by_path(&asked.names(), &trace))
 }
 

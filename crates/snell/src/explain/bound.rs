@@ -3,8 +3,9 @@
 use crate::color::Rgb;
 use crate::integrate::{WithIntegrator, size, with_integrator};
 use crate::scene;
+use crate::stage::CompiledMaterial;
 use crate::trace::{Integrator, Most};
-use crate::world::{CompiledMaterial, World};
+use crate::world::World;
 
 /// So many further levels are considered.
 pub(super) const LEVELS: i32 = 10;

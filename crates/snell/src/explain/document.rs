@@ -8,7 +8,8 @@ use crate::color::Rgb;
 use crate::film::transfer::Transfer;
 use crate::render::trace_pixel;
 use crate::scene::{Integrator, Scene};
-use crate::trace::{Ended, Hit, Node, PixelTrace, RayKind, RayTree, Settings};
+use crate::settings::Settings;
+use crate::trace::{Ended, Hit, Node, PixelTrace, RayKind, RayTree};
 use crate::world::World;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -188,7 +189,7 @@ pub struct ExplainedLight {
 /// Explains a pixel, by column and row from the top left; `None` where the picture has no such pixel. The second is what it was
 /// made of.
 pub fn explain(world: &World, scene: &Scene, name: &str, x: u32, y: u32) -> Option<(Explanation, PixelTrace)> {
-    let trace = trace_pixel(world, &Settings::of(scene), x, y)?;
+    let trace = trace_pixel(world, &Settings::from(scene), x, y)?;
     let names = Names { world, scene };
     let bound = bound::per_throughput(world, scene.render.integrator);
     let samples = trace.samples.iter().map(|tree| sample(&names, bound, tree)).collect();

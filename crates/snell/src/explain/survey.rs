@@ -85,7 +85,7 @@ pub fn by_path(names: &Names<'_>, trace: &PixelTrace) -> Vec<(Path, Rgb)> {
 /// Splits a picture by paths: the `most` strongest of them, and the rest. `None` if cancelled.
 pub fn layers(world: &World, scene: &Scene, most: usize, options: &Options<'_>) -> Option<Layers> {
     let names = Names { world, scene };
-    let settings = Settings::of(scene);
+    let settings = Settings::from(scene);
     let pixels =
         rows(world, || PixelTracer::new(world, &settings), options, |trace| (trace.radiance, by_path(&names, trace)))?;
     let mut strength: IndexMap<&Path, f64> = IndexMap::new();
@@ -113,7 +113,7 @@ pub fn layers(world: &World, scene: &Scene, most: usize, options: &Options<'_>) 
 /// What one path alone adds to each pixel, row by row. `None` if cancelled.
 pub fn only(world: &World, scene: &Scene, path: &Path, options: &Options<'_>) -> Option<Vec<Rgb>> {
     let names = Names { world, scene };
-    let settings = Settings::of(scene);
+    let settings = Settings::from(scene);
     rows(
         world,
         || PixelTracer::new(world, &settings),
@@ -128,7 +128,7 @@ pub fn only(world: &World, scene: &Scene, path: &Path, options: &Options<'_>) ->
 /// Where an object is seen, directly or by others. A pixel counts once for each path that it has. `None` if cancelled.
 pub fn find(world: &World, scene: &Scene, object: &str, options: &Options<'_>) -> Option<Sightings> {
     let names = Names { world, scene };
-    let settings = Settings::of(scene);
+    let settings = Settings::from(scene);
     let pixels = rows(
         world,
         || PixelTracer::new(world, &settings),

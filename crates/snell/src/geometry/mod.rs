@@ -1,22 +1,13 @@
-//! Vectors, rays, and what a ray can hit. Pure geometry: no materials, no light.
+//! Meshes, the building of trees, and whether a mesh is a solid; on top of the kernels' vectors, rays and shapes.
 
-pub mod area;
-pub mod bounds;
 pub mod bvh;
-#[cfg(test)]
-pub(crate) mod exact;
 pub mod mesh;
-pub mod ray;
-pub mod shape;
-#[cfg(test)]
-mod soak;
 pub mod solid;
 pub mod tessellate;
-pub mod transform;
-pub mod vec3;
+#[cfg(test)]
+mod tests;
 
-pub use bounds::Bounds;
 pub use mesh::{NO_UVS, TriangleMesh};
-pub use shape::{Sphere, sphere, triangle};
-pub use transform::Affine;
-pub use vec3::Vec3;
+pub use snell_kernels::geometry::{
+    Affine, Bounds, Sphere, Vec3, area, bounds, ray, shape, sphere, transform, triangle, vec3,
+};

@@ -1,10 +1,5 @@
-//! Optics as pure functions: no scene, no queue, one formula each.
+//! Optics as pure functions, which are the kernels', and a catalogue of glasses.
 
-pub mod absorption;
-pub mod dispersion;
-pub mod fresnel;
 pub mod glass;
-pub mod phong;
-pub mod snell;
-pub mod spectrum;
-pub mod thin;
+
+pub use snell_kernels::optics::{absorption, dispersion, fresnel, phong, snell, spectrum, thin};

@@ -3,11 +3,13 @@
 mod accumulator;
 mod renderer;
 mod spread;
+mod warnings;
 
 pub use crate::lanes::LaneWidth;
-pub use crate::trace::Settings;
+pub use crate::settings::Settings;
 pub use accumulator::{Accumulator, MergeError};
 pub use renderer::Renderer;
+pub use warnings::warnings;
 
 use crate::film::{Crop, Film, FilmTooLarge};
 use crate::integrate::{WithIntegrator, with_first_hit, with_integrator};

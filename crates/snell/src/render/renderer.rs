@@ -7,8 +7,9 @@ use crate::color::Rgb;
 use crate::film::{Crop, Film};
 use crate::integrate::{WithIntegrator, with_integrator};
 use crate::lanes::{Kernel, Lanes, dispatch};
+use crate::settings::Settings;
 use crate::threads;
-use crate::trace::{Block, Integrator, Settings, Statistics, Tile, TracedTile, Tracer, mean};
+use crate::trace::{Block, Integrator, Statistics, Tile, TracedTile, Tracer, mean};
 use crate::world::World;
 use std::collections::VecDeque;
 use std::ops::Range;
@@ -25,7 +26,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 /// use snell::render::{Options, Passes, Renderer, Settings};
 ///
 /// let world = snell::world::World::new(&scene)?;
-/// let settings = Settings::of(&scene);
+/// let settings = Settings::from(&scene);
 /// let options = Options { passes: Passes::CoarseToFine { coarsest: 8 }, ..Options::default() };
 /// let mut renderer = Renderer::new(&world, &settings, &options)?;
 /// while !renderer.is_finished() {

@@ -1,7 +1,9 @@
 //! The pinhole camera with its image plane.
 
+use super::Render;
 use crate::geometry::Vec3;
 use crate::lanes::elementary::sin_cos_degrees;
+use crate::stage::CameraFrame;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -42,6 +44,13 @@ impl Camera {
     /// A camera with bounds.
     pub fn new(eye: [f64; 3], look_at: [f64; 3], up: [f64; 3], bounds: [f64; 4], near: f64) -> Self {
         Self { eye, look_at, up, bounds: Some(bounds), fov: None, near: Some(near), far: None }
+    }
+
+    /// The camera, placed, for a picture that is made like this. It has been validated.
+    pub fn frame(&self, render: &Render) -> CameraFrame {
+        let (axes, bounds) = (self.axes().unwrap_or_default(), self.window(render.size));
+        let from_eye = render.integrator.starts_at_eye();
+        CameraFrame { eye: self.eye.into(), axes, bounds, size: render.size, near: self.image_plane(), from_eye }
     }
 
     /// Where the image plane stands along W.
@@ -105,7 +114,8 @@ pub(super) fn widened(bounds: [f64; 4], before: [u32; 2], size: [u32; 2]) -> Opt
 
 #[cfg(test)]
 mod tests {
-    use super::widened;
+    use super::*;
+    use crate::scene::Integrator;
 
     #[test]
     fn another_shape_shows_more_and_keeps_pixels_square() {
@@ -116,5 +126,47 @@ mod tests {
         let upside_down = [0.0, 2.0, 1.0, -1.0];
         assert_eq!(widened(upside_down, [512, 512], [51, 101]), Some([0.0, 2.0, 2.0, -2.0]), "and stays so");
         assert_eq!(widened([-2.0, 2.0, -1.0, 1.0], [512, 512], [200, 100]), None, "the bounds' own shape");
+    }
+
+    fn camera(eye: [f64; 3], look_at: [f64; 3]) -> Camera {
+        Camera::new(eye, look_at, [0.0, 1.0, 0.0], [-2.0, 4.0, -1.0, 3.0], -5.0)
+    }
+
+    fn frame(size: [u32; 2]) -> CameraFrame {
+        camera([0.0, 0.0, 10.0], [0.0; 3]).frame(&Render::new(Integrator::Lecture, size))
+    }
+
+    #[test]
+    fn pixels_sit_on_the_corners_of_the_grid() {
+        let camera = frame([3, 5]);
+        assert_eq!(camera.axes[0], Vec3::new(1.0, 0.0, 0.0));
+        assert_eq!(camera.ray(0, 0).0, Vec3::new(-2.0, 3.0, 5.0), "top left");
+        assert_eq!(camera.ray(2, 4).0, Vec3::new(4.0, -1.0, 5.0), "bottom right");
+        assert_eq!(camera.ray(1, 2).0, Vec3::new(1.0, 1.0, 5.0), "the middle");
+    }
+
+    /// The lecture's point of the image plane is `eye + …`, and loses digits with the eye; an eye's own rays need no such sum.
+    #[test]
+    fn rays_from_the_eye_have_the_same_directions_however_far_away() {
+        let rays = |far: f64, near: Option<f64>| {
+            let at = |[x, y, z]: [f64; 3]| [x + far, y - far, z + far];
+            let camera = Camera { fov: Some(40.0), bounds: None, near, ..camera(at([0.0, 2.0, 10.0]), at([1.0; 3])) };
+            let frame = camera.frame(&Render::new(Integrator::Whitted, [5, 4]));
+            (0..20).map(|i| frame.ray(i % 5, i / 5)).collect::<Vec<_>>()
+        };
+        for far in [0.0, 1e6, 1e12] {
+            let found = rays(far, None);
+            assert!(found.iter().all(|(origin, _)| *origin == Vec3::new(far, 2.0 - far, 10.0 + far)));
+            assert!(found.iter().zip(rays(0.0, None)).all(|((_, found), (_, expected))| *found == expected), "{far}");
+        }
+        // Where the plane stands changes nothing but a few roundings of numbers below 1.
+        for (found, expected) in rays(0.0, Some(-1e3)).into_iter().zip(rays(0.0, None)) {
+            assert!(found.0 == expected.0 && (found.1 - expected.1).length() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn a_single_pixel_looks_through_the_middle() {
+        assert_eq!(frame([1, 1]).ray(0, 0).0, Vec3::new(1.0, 1.0, 5.0));
     }
 }

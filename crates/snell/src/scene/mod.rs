@@ -17,12 +17,14 @@ mod transform;
 mod validate;
 mod warning;
 
+use crate::settings::Settings;
+pub use crate::settings::{Integrator, Shadows};
 pub use camera::Camera;
 pub use generated::{Cuboid, Disc, Lathe, Plane};
 pub use light::Light;
 pub use material::Material;
 pub use problem::{Problem, Problems, Remedy, Step};
-pub use render::{BANDS, Integrator, MIN_THROUGHPUT, Render, Shadows};
+pub use render::{BANDS, MIN_THROUGHPUT, Render};
 pub use shape::{Mesh, OpenMesh, Sphere};
 pub use sky::Sky;
 pub use texture::Texture;
@@ -105,6 +107,21 @@ pub struct Scene {
     /// What turns around an axis.
     #[serde(default, rename = "lathe", skip_serializing_if = "Vec::is_empty", deserialize_with = "table::many")]
     pub lathes: Vec<Lathe>,
+}
+
+/// The settings that a scene asks for.
+impl From<&Scene> for Settings {
+    fn from(scene: &Scene) -> Self {
+        let render = &scene.render;
+        Self {
+            integrator: render.integrator,
+            max_depth: render.max_depth,
+            shadows: render.shadows(),
+            spp: render.spp,
+            seed: render.seed,
+            min_throughput: render.min_throughput,
+        }
+    }
 }
 
 impl Scene {

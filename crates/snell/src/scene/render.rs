@@ -1,6 +1,7 @@
 //! How a picture is made.
 
 use crate::film::transfer::{Encoding, Rounding, Transfer};
+use crate::settings::{Integrator, Shadows};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -68,46 +69,6 @@ impl Render {
             Integrator::Lecture | Integrator::Course2018 | Integrator::Course2020 => Shadows::Opaque,
         })
     }
-}
-
-/// The model of light.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "lowercase")]
-pub enum Integrator {
-    /// The lecture's recursion, with its compounding attenuation and its one-step way through glass spheres.
-    Lecture,
-    /// The course of 2018, assignments 3 and 4: mirrors only.
-    Course2018,
-    /// The course of 2019 and 2020: mirrors, and glass spheres of weight `1 − kr`.
-    Course2020,
-    /// Real optics: Fresnel, total reflection, the inside of solids, absorption.
-    Whitted,
-}
-
-impl Integrator {
-    /// Do camera rays start at the eye? In the models of the lecture and the course they start on the image plane.
-    pub fn starts_at_eye(self) -> bool {
-        self == Self::Whitted
-    }
-
-    /// Are rays followed through solids, from medium to medium?
-    pub fn has_media(self) -> bool {
-        self == Self::Whitted
-    }
-}
-
-/// What stands between a surface and a light.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "lowercase")]
-pub enum Shadows {
-    /// Nothing: every light reaches every surface that faces it.
-    Off,
-    /// Anything at all blocks a light, transparent or not.
-    Opaque,
-    /// `whitted`: light goes straight through transparent things, and what they reflect and absorb is lost.
-    Tinted,
-    /// Not built yet, and refused: light as glass focuses it.
-    Caustic,
 }
 
 /// The default of [`Render::min_throughput`].

@@ -1,51 +1,9 @@
-//! Materials as the kernels see them: plain numbers.
+//! From the materials of a scene to those of the kernels.
 
-use crate::color::Rgb;
 use crate::optics::dispersion::LINE_D_NM;
 use crate::optics::spectrum::Band;
 use crate::scene::{Material, Scene};
-
-/// "None", where the number of a spectrum or a pattern is expected.
-pub(super) const NONE: u32 = u32::MAX;
-
-/// What a surface does with light; the names are those of [`Material`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct CompiledMaterial {
-    pub ka: Rgb,
-    pub kd: Rgb,
-    pub ks: Rgb,
-    pub kr: Rgb,
-    pub ko: Rgb,
-    pub spow: f64,
-    pub emission: Rgb,
-    /// Index of refraction, of all colours or of the d line.
-    pub eta: f64,
-    /// Absorption per scene unit.
-    pub sigma_a: Rgb,
-    /// Thickness of a pane in scene units; negative for what is none.
-    pub thickness: f64,
-    pub priority: i32,
-    /// 1 where `kd` tints what goes through, else 0.
-    pub tints: f64,
-    /// Which of the spectra its indices are; [`NONE`] where they do not depend on the band.
-    pub spectrum: u32,
-    /// Which of the patterns is on it; [`NONE`] for none.
-    pub pattern: u32,
-    /// Are there places on it where not all of it is there?
-    pub has_holes: bool,
-}
-
-impl CompiledMaterial {
-    /// Does light go through it? `Σko < 3`, as in the lecture.
-    pub fn is_transparent(&self) -> bool {
-        self.ko.to_array().iter().sum::<f64>() < 3.0
-    }
-
-    /// Is each of its faces a whole pane?
-    pub fn is_pane(&self) -> bool {
-        self.thickness >= 0.0
-    }
-}
+use crate::stage::{CompiledMaterial, NONE};
 
 /// All materials of a scene, in its order, and the indices of the bands, of each that is dispersive. `has_alpha` says which
 /// patterns have places where the surface is not there.

@@ -1,8 +1,8 @@
 //! From the meshes of a scene to triangles, surfaces and solids.
 
+use super::Object;
+use super::builder::Builder;
 use super::solid::MeshSolids;
-use super::surface::{FLAT, Surfaces};
-use super::{NO_PRIMITIVE, NO_SOLID, Object, Solid, World};
 use crate::geometry::area::largest_angle;
 use crate::geometry::mesh::{MAX_SMOOTHED_VALENCE, NormalWeights};
 use crate::geometry::shape::{self, Cuboid, Disc, Rectangle};
@@ -11,7 +11,7 @@ use crate::geometry::{Affine, Bounds, TriangleMesh, Vec3, triangle};
 use crate::scene::{
     Integrator, LARGEST_NUMBER, Mesh, OpenMesh, Problem, Remedy, Step, Warning, WarningCode, whole_map,
 };
-use indexmap::IndexMap;
+use crate::stage::{FLAT, NO_PRIMITIVE, NO_SOLID, Solid, Surfaces};
 
 /// Triangles on their way into a tree, each with its largest angle first ([`area`](crate::geometry::area)).
 #[derive(Default)]
@@ -30,9 +30,8 @@ impl Triangles {
 pub(super) type Which = (&'static str, usize);
 
 /// All that trees are to be built of.
+#[derive(Default)]
 pub(super) struct Parts {
-    /// The model of light that the scene asks for.
-    pub integrator: Integrator,
     pub triangles: Triangles,
     pub models: Vec<Triangles>,
     /// The meshes to be placed, when all ids before them are known: shape of the scene, name, model, map.
@@ -44,24 +43,6 @@ pub(super) struct Parts {
     /// The solids of each model.
     pub solids: Vec<Vec<Solid>>,
 }
-
-impl Parts {
-    pub fn of(integrator: Integrator) -> Self {
-        Self {
-            integrator,
-            triangles: Triangles::default(),
-            models: Vec::new(),
-            placed: Vec::new(),
-            rectangles: Vec::new(),
-            cuboids: Vec::new(),
-            discs: Vec::new(),
-            solids: Vec::new(),
-        }
-    }
-}
-
-/// The numbers of materials, by their names.
-pub(super) type MaterialIds<'a> = IndexMap<&'a str, u32>;
 
 /// What is on both sides of the transparent faces of a mesh.
 enum Sides {
@@ -97,14 +78,8 @@ fn normal_weights(has_media: bool) -> NormalWeights {
     if has_media { NormalWeights::Angle } else { NormalWeights::Equal }
 }
 
-impl World {
-    pub(super) fn add_mesh(
-        &mut self,
-        which: Which,
-        mesh: &Mesh,
-        material_ids: &MaterialIds<'_>,
-        parts: &mut Parts,
-    ) -> Result<(), Problem> {
+impl Builder<'_> {
+    pub(super) fn add_mesh(&mut self, which: Which, mesh: &Mesh) -> Result<(), Problem> {
         let place = |key: &str| vec![Step::from(which.0), Step::from(which.1), Step::from(key)];
         let problem = |key: &str, message: String| Problem { place: place(key), message, help: None, remedy: None };
         if mesh.inside.is_some() && !mesh.instances.is_empty() {
@@ -112,7 +87,7 @@ impl World {
             for steps in &mesh.instances {
                 let transform = [mesh.transform.as_slice(), steps].concat();
                 let one = Mesh { transform, instances: Vec::new(), ..mesh.clone() };
-                self.add_mesh(which, &one, material_ids, parts)?;
+                self.add_mesh(which, &one)?;
             }
             return Ok(());
         }
@@ -134,7 +109,7 @@ impl World {
             let message = format!("a vertex ends up at ({}, {}, {}), beyond 1e15", v.x, v.y, v.z);
             return Err(problem("transform", message));
         }
-        let slots = slot_materials(mesh, source, material_ids).map_err(|m| problem("materials", m))?;
+        let slots = self.slot_materials(mesh, source).map_err(|m| problem("materials", m))?;
 
         let name = mesh.name.clone().or_else(|| mesh.file.clone());
         let name = name.unwrap_or_else(|| format!("{} {}", which.0, which.1 + 1));
@@ -145,29 +120,28 @@ impl World {
         // Where a person would look for what is wrong with the mesh.
         let main_key = if mesh.file.is_some() { "file" } else { "material" };
         let refused = |problem| Problem { place: place(main_key), ..problem };
-        let (placed, sides) =
-            self.sides_of(&name, &place("open"), mesh, placed, &material_of, material_ids).map_err(refused)?;
-        let textured = (0..placed.faces.len()).any(|f| self.texture_of(material_of(f, &placed)).is_some());
+        let (placed, sides) = self.sides_of(&name, &place("open"), mesh, placed, &material_of).map_err(refused)?;
+        let textured = (0..placed.faces.len()).any(|f| self.stage.texture_of(material_of(f, &placed)).is_some());
         if textured && placed.face_uvs.is_empty() && !placed.faces.is_empty() {
             let help = "give it a material without texture, or a model file with texture coordinates";
             return Err(refused(refusal(format!("`{name}` has no texture coordinates for its texture"), help, None)));
         }
-        let weights = normal_weights(self.has_media);
+        let weights = normal_weights(self.stage.has_media);
         let corner_normals = (mesh.smooth_angle > 0.0).then(|| placed.smooth_normals(mesh.smooth_angle, weights));
         let is_model = !mesh.instances.is_empty();
         let (surfaces, triangles) = if is_model {
-            self.models.push(Surfaces::default());
-            parts.models.push(Triangles::default());
-            (self.models.last_mut(), parts.models.last_mut())
+            self.stage.models.push(Surfaces::default());
+            self.parts.models.push(Triangles::default());
+            (self.stage.models.last_mut(), self.parts.models.last_mut())
         } else {
-            (Some(&mut self.surfaces), Some(&mut parts.triangles))
+            (Some(&mut self.stage.surfaces), Some(&mut self.parts.triangles))
         };
         let (Some(surfaces), Some(triangles)) = (surfaces, triangles) else { return Ok(()) };
         // Solids of a model are numbered from 0, and get their own in each place.
-        let first_solid = if is_model { 0 } else { self.solids.len() as u32 };
+        let first_solid = if is_model { 0 } else { self.stage.solids.len() as u32 };
         let (first, base) = (surfaces.material_of.len() as u32, triangles.vertices.len() as u32);
         let mut without_area = 0usize;
-        let mut used = vec![false; self.materials.len()];
+        let mut used = vec![false; self.stage.materials.len()];
         for (f, face) in placed.faces.iter().enumerate() {
             if !triangle::normal(placed.corners(f)).is_finite() {
                 without_area += 1;
@@ -178,7 +152,7 @@ impl World {
             used[material as usize] = true;
             triangles.faces.push(turned(*face, first_corner).map(|v| v + base));
             surfaces.material_of.push(material);
-            let [behind, front] = if self.materials[material as usize].is_transparent() {
+            let [behind, front] = if self.stage.materials[material as usize].is_transparent() {
                 sides.of(f, first_solid)
             } else {
                 [NO_SOLID; 2]
@@ -198,17 +172,39 @@ impl World {
         triangles.vertices.extend(&placed.vertices);
         let solids = if let Sides::Solids(solids) = sides { solids.solids } else { Vec::new() };
         if is_model {
-            parts.solids.push(solids);
-            let model = self.models.len() - 1;
+            self.parts.solids.push(solids);
+            let model = self.stage.models.len() - 1;
             let maps = mesh.instances.iter().map(|steps| whole_map(steps));
-            parts.placed.extend(maps.map(|map| (which, name.clone(), model, map)));
+            self.parts.placed.extend(maps.map(|map| (which, name.clone(), model, map)));
         } else {
-            self.solids.extend(solids);
-            let count = self.surfaces.material_of.len() as u32 - first;
+            self.stage.solids.extend(solids);
+            let count = self.stage.surfaces.material_of.len() as u32 - first;
             self.objects.push(Object { name: name.clone(), first, count });
         }
-        self.warn_about(&name, &place(main_key), &placed, mesh, without_area, &used, parts.integrator);
+        self.warn_about(&name, &place(main_key), &placed, mesh, without_area, &used);
         Ok(())
+    }
+
+    /// The material of each slot of a model; at least one.
+    fn slot_materials(&self, mesh: &Mesh, source: &TriangleMesh) -> Result<Vec<u32>, String> {
+        let id =
+            |name: &str| self.material_ids.get(name).copied().ok_or_else(|| format!("no material is called `{name}`"));
+        if let Some(name) = &mesh.material {
+            return Ok(vec![id(name)?]);
+        }
+        if source.faces.is_empty() {
+            return Ok(vec![0]);
+        }
+        if source.slots.is_empty() || source.face_slots.len() != source.faces.len() {
+            return Err("the model names no materials: give the mesh one with `material`".to_owned());
+        }
+        let named = |slot: &String| match mesh.materials.get(slot) {
+            Some(name) => id(name),
+            None => {
+                Err(format!("no material for `{slot}` of the model: give the mesh a `material` or a `materials` entry"))
+            }
+        };
+        source.slots.iter().map(named).collect()
     }
 
     /// The mesh, with its holes filled if that was asked for, and what is on both sides of its faces if light goes through
@@ -220,12 +216,11 @@ impl World {
         mesh: &Mesh,
         placed: TriangleMesh,
         material_of: &impl Fn(usize, &TriangleMesh) -> u32,
-        material_ids: &MaterialIds<'_>,
     ) -> Result<(TriangleMesh, Sides), Problem> {
         let materials = (0..placed.faces.len()).map(|f| material_of(f, &placed));
         let mut media = materials.filter(|&m| self.refracts(m)).map(|m| self.medium_of(m));
         let Some(medium) = media.next() else {
-            if mesh.inside.is_some() && self.has_media {
+            if mesh.inside.is_some() && self.stage.has_media {
                 return Err(nothing_goes_through(name));
             }
             drop(media);
@@ -233,7 +228,7 @@ impl World {
         };
         if mesh.inside.is_some() {
             drop(media);
-            return self.interface(name, mesh, placed, material_ids);
+            return self.interface(name, mesh, placed);
         }
         if media.any(|other| other != medium) {
             let message = format!("`{name}` has faces of different glasses, so that it is not clear what is inside");
@@ -277,7 +272,6 @@ impl World {
         name: &str,
         mesh: &Mesh,
         mut placed: TriangleMesh,
-        material_ids: &MaterialIds<'_>,
     ) -> Result<(TriangleMesh, Sides), Problem> {
         let turned = structure(&placed).misoriented.count;
         if turned > 0 {
@@ -286,11 +280,7 @@ impl World {
             return Err(refusal(message, "turn them to one side", Some(Remedy::RepairMesh)));
         }
         let bounds = Bounds::of(placed.vertices.iter().copied());
-        let mut side = |name: Option<&String>| {
-            let material = name.and_then(|name| material_ids.get(name.as_str()));
-            material.map_or(NO_SOLID, |&material| self.medium_between_faces(material, bounds))
-        };
-        let [inside, outside] = [side(mesh.inside.as_ref()), side(mesh.outside.as_ref())];
+        let [inside, outside] = [self.side(mesh.inside.as_ref(), bounds), self.side(mesh.outside.as_ref(), bounds)];
         if whole_map(&mesh.transform).mirrors() {
             // In a mirror image faces look the other way.
             (0..placed.faces.len()).for_each(|face| placed.turn(face));
@@ -298,14 +288,15 @@ impl World {
         Ok((placed, Sides::Interface([inside, outside])))
     }
 
-    /// The solid of all that interfaces say to be filled with a material.
-    pub(super) fn medium_between_faces(&mut self, material: u32, bounds: Bounds) -> u32 {
-        let known = self.solids.iter().position(|solid| solid.between_faces_of == Some(material));
-        let number = known.unwrap_or(self.solids.len());
+    /// The solid of all that interfaces say to be filled with the material of this name; [`NO_SOLID`] where there is none.
+    pub(super) fn side(&mut self, material: Option<&String>, bounds: Bounds) -> u32 {
+        let Some(&material) = material.and_then(|name| self.material_ids.get(name.as_str())) else { return NO_SOLID };
+        let known = self.stage.solids.iter().position(|solid| solid.between_faces_of == Some(material));
+        let number = known.unwrap_or(self.stage.solids.len());
         if known.is_none() {
             let medium = self.medium_of(material);
             let bounds = Bounds::EMPTY;
-            self.solids.push(Solid {
+            self.stage.solids.push(Solid {
                 medium,
                 inward: false,
                 touches: false,
@@ -314,7 +305,7 @@ impl World {
                 bounds,
             });
         }
-        self.solids[number].bounds = self.solids[number].bounds.union(bounds);
+        self.stage.solids[number].bounds = self.stage.solids[number].bounds.union(bounds);
         number as u32
     }
 
@@ -327,7 +318,6 @@ impl World {
         mesh: &Mesh,
         without_area: usize,
         used: &[bool],
-        integrator: Integrator,
     ) {
         let mut warn = |code, message| self.warnings.push(Warning { code, place: place.to_vec(), message });
         if without_area > 0 {
@@ -342,15 +332,15 @@ impl World {
                 warn(WarningCode::NotSmoothed, message);
             }
         }
-        let transparent = self.materials.iter().zip(used).any(|(m, &used)| used && m.is_transparent());
+        let transparent = self.stage.materials.iter().zip(used).any(|(m, &used)| used && m.is_transparent());
         if transparent {
-            self.warn_not_refracted(name, place.to_vec(), integrator);
+            self.warn_not_refracted(name, place.to_vec());
         }
     }
 
     /// Warns of what is transparent and no sphere, where only spheres refract.
-    pub(super) fn warn_not_refracted(&mut self, name: &str, place: Vec<Step>, integrator: Integrator) {
-        if matches!(integrator, Integrator::Lecture | Integrator::Course2020) {
+    pub(super) fn warn_not_refracted(&mut self, name: &str, place: Vec<Step>) {
+        if matches!(self.scene.render.integrator, Integrator::Lecture | Integrator::Course2020) {
             let message = format!(
                 "`{name}` has a transparent material, but this integrator refracts only in spheres: \
                  its transparent share is not drawn"
@@ -384,25 +374,4 @@ fn turned<T>(mut corners: [T; 3], first: usize) -> [T; 3] {
 fn written_out(mesh: &Mesh) -> TriangleMesh {
     let vertices = mesh.vertices.iter().map(|&v| v.into()).collect();
     TriangleMesh { vertices, faces: mesh.faces.clone(), ..TriangleMesh::default() }
-}
-
-/// The material of each slot of a model; at least one.
-fn slot_materials(mesh: &Mesh, source: &TriangleMesh, ids: &MaterialIds<'_>) -> Result<Vec<u32>, String> {
-    let id = |name: &str| ids.get(name).copied().ok_or_else(|| format!("no material is called `{name}`"));
-    if let Some(name) = &mesh.material {
-        return Ok(vec![id(name)?]);
-    }
-    if source.faces.is_empty() {
-        return Ok(vec![0]);
-    }
-    if source.slots.is_empty() || source.face_slots.len() != source.faces.len() {
-        return Err("the model names no materials: give the mesh one with `material`".to_owned());
-    }
-    let named = |slot: &String| match mesh.materials.get(slot) {
-        Some(name) => id(name),
-        None => {
-            Err(format!("no material for `{slot}` of the model: give the mesh a `material` or a `materials` entry"))
-        }
-    };
-    source.slots.iter().map(named).collect()
 }

@@ -1,16 +1,17 @@
 //! From the planes, boxes and discs of a scene to shapes of the world: one primitive for each place of each.
 
-use super::mesh::{MaterialIds, Parts, Which, nothing_goes_through, put_sparse, refusal};
+use super::Object;
+use super::builder::Builder;
+use super::mesh::{Parts, Which, nothing_goes_through, put_sparse, refusal};
 use super::solid::MeshSolids;
-use super::{NO_SOLID, Object, Solid, World};
 use crate::geometry::shape::{Cuboid, Disc, Rectangle, Surface};
 use crate::geometry::{Affine, TriangleMesh};
-use crate::scene::{Integrator, LARGEST_NUMBER, Problem, Scene, Step, Transform, Warning, WarningCode, whole_map};
+use crate::scene::{LARGEST_NUMBER, Problem, Step, Transform, Warning, WarningCode, whole_map};
+use crate::stage::{NO_SOLID, Solid};
 
 /// What is said of a shape besides where it is.
 struct About<'a> {
     which: Which,
-    integrator: Integrator,
     name: Option<&'a String>,
     material: &'a str,
     inside: Option<&'a String>,
@@ -26,6 +27,8 @@ trait Placeable: Surface + Copy {
     fn has_size(&self) -> bool;
     /// Does it enclose something?
     fn is_solid() -> bool;
+    /// Where those of its kind are collected.
+    fn list(parts: &mut Parts) -> &mut Vec<Self>;
 }
 
 impl Placeable for Rectangle {
@@ -37,6 +40,9 @@ impl Placeable for Rectangle {
     }
     fn is_solid() -> bool {
         false
+    }
+    fn list(parts: &mut Parts) -> &mut Vec<Self> {
+        &mut parts.rectangles
     }
 }
 
@@ -50,6 +56,9 @@ impl Placeable for Cuboid {
     fn is_solid() -> bool {
         true
     }
+    fn list(parts: &mut Parts) -> &mut Vec<Self> {
+        &mut parts.cuboids
+    }
 }
 
 impl Placeable for Disc {
@@ -62,20 +71,18 @@ impl Placeable for Disc {
     fn is_solid() -> bool {
         false
     }
+    fn list(parts: &mut Parts) -> &mut Vec<Self> {
+        &mut parts.discs
+    }
 }
 
-impl World {
+impl Builder<'_> {
     /// Adds all of them, in the order of their kinds.
-    pub(super) fn add_shapes(
-        &mut self,
-        scene: &Scene,
-        material_ids: &MaterialIds<'_>,
-        parts: &mut Parts,
-    ) -> Result<(), Problem> {
+    pub(super) fn add_shapes(&mut self) -> Result<(), Problem> {
+        let scene = self.scene;
         for (i, plane) in scene.planes.iter().enumerate() {
             let about = About {
                 which: ("plane", i),
-                integrator: scene.render.integrator,
                 name: plane.name.as_ref(),
                 material: &plane.material,
                 inside: plane.inside.as_ref(),
@@ -84,12 +91,11 @@ impl World {
                 instances: &plane.instances,
             };
             let shape = Rectangle::new(plane.center.into(), plane.normal.into(), plane.size);
-            self.add_shape(&about, shape, material_ids, &mut parts.rectangles)?;
+            self.add_shape(&about, shape)?;
         }
         for (i, cuboid) in scene.boxes.iter().enumerate() {
             let about = About {
                 which: ("box", i),
-                integrator: scene.render.integrator,
                 name: cuboid.name.as_ref(),
                 material: &cuboid.material,
                 inside: None,
@@ -97,17 +103,11 @@ impl World {
                 transform: &cuboid.transform,
                 instances: &cuboid.instances,
             };
-            self.add_shape(
-                &about,
-                Cuboid::new(cuboid.min.into(), cuboid.max.into()),
-                material_ids,
-                &mut parts.cuboids,
-            )?;
+            self.add_shape(&about, Cuboid::new(cuboid.min.into(), cuboid.max.into()))?;
         }
         for (i, disc) in scene.discs.iter().enumerate() {
             let about = About {
                 which: ("disc", i),
-                integrator: scene.render.integrator,
                 name: disc.name.as_ref(),
                 material: &disc.material,
                 inside: disc.inside.as_ref(),
@@ -116,23 +116,17 @@ impl World {
                 instances: &disc.instances,
             };
             let shape = Disc::new(disc.center.into(), disc.normal.into(), disc.radius);
-            self.add_shape(&about, shape, material_ids, &mut parts.discs)?;
+            self.add_shape(&about, shape)?;
         }
         Ok(())
     }
 
     /// Adds a shape in all of its places.
-    fn add_shape<S: Placeable>(
-        &mut self,
-        about: &About<'_>,
-        shape: S,
-        material_ids: &MaterialIds<'_>,
-        list: &mut Vec<S>,
-    ) -> Result<(), Problem> {
+    fn add_shape<S: Placeable>(&mut self, about: &About<'_>, shape: S) -> Result<(), Problem> {
         let (kind, index) = about.which;
         let place = |key: &str| vec![Step::from(kind), Step::from(index), Step::from(key)];
         let name = about.name.cloned().unwrap_or_else(|| format!("{kind} {}", index + 1));
-        let material = material_ids.get(about.material).copied().unwrap_or(0);
+        let material = self.material_ids.get(about.material).copied().unwrap_or(0);
         let own = shape.under(&whole_map(about.transform));
         let (key, places) = if about.instances.is_empty() {
             ("transform", vec![own])
@@ -150,7 +144,7 @@ impl World {
             if !has_size && (S::is_solid() || key == "instances") {
                 return Err(problem(format!("`{name}` is scaled by 0 here")));
             }
-            let first = self.surfaces.material_of.len() as u32;
+            let first = self.stage.surfaces.material_of.len() as u32;
             self.objects.push(Object { name: name.clone(), first, count: u32::from(has_size) });
             if !has_size {
                 let message = format!("`{name}` has no area, and is left out");
@@ -158,15 +152,14 @@ impl World {
                 continue;
             }
             let refused = |problem| Problem { place: place("material"), ..problem };
-            let [behind, front] =
-                self.sides_of_shape(&name, about, &placed, material, material_ids).map_err(refused)?;
-            self.surfaces.material_of.push(material);
-            put_sparse(&mut self.surfaces.interior_of, first as usize, behind, NO_SOLID);
-            put_sparse(&mut self.surfaces.exterior_of, first as usize, front, NO_SOLID);
-            list.push(placed);
+            let [behind, front] = self.sides_of_shape(&name, about, &placed, material).map_err(refused)?;
+            self.stage.surfaces.material_of.push(material);
+            put_sparse(&mut self.stage.surfaces.interior_of, first as usize, behind, NO_SOLID);
+            put_sparse(&mut self.stage.surfaces.exterior_of, first as usize, front, NO_SOLID);
+            S::list(&mut self.parts).push(placed);
         }
-        if self.materials[material as usize].is_transparent() {
-            self.warn_not_refracted(&name, place("material"), about.integrator);
+        if self.stage.materials[material as usize].is_transparent() {
+            self.warn_not_refracted(&name, place("material"));
         }
         Ok(())
     }
@@ -178,20 +171,16 @@ impl World {
         about: &About<'_>,
         shape: &S,
         material: u32,
-        material_ids: &MaterialIds<'_>,
     ) -> Result<[u32; 2], Problem> {
         if !self.refracts(material) {
             return match about.inside {
-                Some(_) if self.has_media => Err(nothing_goes_through(name)),
+                Some(_) if self.stage.has_media => Err(nothing_goes_through(name)),
                 _ => Ok([NO_SOLID; 2]),
             };
         }
         if about.inside.is_some() {
-            let mut side = |name: Option<&String>| {
-                let material = name.and_then(|name| material_ids.get(name.as_str()));
-                material.map_or(NO_SOLID, |&material| self.medium_between_faces(material, shape.bounds()))
-            };
-            return Ok([side(about.inside), side(about.outside)]);
+            let bounds = shape.bounds();
+            return Ok([self.side(about.inside, bounds), self.side(about.outside, bounds)]);
         }
         let medium = self.medium_of(material);
         if !S::is_solid() {
@@ -211,13 +200,13 @@ impl World {
             let help = "give its material a `thickness` for a thin pane, or name the media on both sides with `inside` and `outside`";
             return Err(refusal(message, help, None));
         }
-        let number = self.solids.len() as u32;
-        self.solids.push(Solid {
+        let number = self.stage.solids.len() as u32;
+        self.stage.solids.push(Solid {
             medium,
             inward: false,
             touches: false,
             between_faces_of: None,
-            primitive: self.surfaces.material_of.len() as u32,
+            primitive: self.stage.surfaces.material_of.len() as u32,
             bounds: shape.bounds(),
         });
         Ok([number, NO_SOLID])

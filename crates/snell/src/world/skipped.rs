@@ -1,10 +1,10 @@
 //! What stands between the eye and the image plane. In the models of the lecture and the course rays start on the plane, so
 //! that nothing of it is seen, and what reaches through the plane is cut open.
 
-use super::camera::JITTER;
 use super::{CameraFrame, World};
 use crate::geometry::{Sphere, Vec3};
 use crate::scene::{Step, Warning, WarningCode};
+use crate::stage::JITTER;
 
 /// So many objects are named.
 const NAMED: usize = 3;
@@ -12,7 +12,7 @@ const NAMED: usize = 3;
 impl World {
     /// W009, if rays start on the image plane and pass over something.
     pub(super) fn before_image_plane(&self, spp: u32) -> Option<Warning> {
-        if self.camera.starts_at_eye() {
+        if self.camera.from_eye {
             return None;
         }
         let skipped = Pyramid::of(&self.camera, if spp > 1 { JITTER } else { 0.0 });
@@ -70,7 +70,7 @@ impl Pyramid {
         };
         let [a, b, c, d] = AROUND.map(side);
         // What touches the plane but for roundings stands behind it.
-        let base = (-camera.axes[2], camera.near().abs() * (1.0 - 1e-9));
+        let base = (-camera.axes[2], camera.near.abs() * (1.0 - 1e-9));
         Self { eye: camera.eye, corners, faces: [a, b, c, d, base] }
     }
 
@@ -148,7 +148,7 @@ mod tests {
         let at = |p: [f64; 3]| p.map(|c| c * scale);
         let bounds = [-1.0, 3.0, -2.0, 1.0].map(|b| b * scale);
         let camera = Camera::new(at([1.0, 2.0, 9.0]), at([0.5, 0.0, 0.0]), [0.1, 1.0, 0.2], bounds, -4.0 * scale);
-        CameraFrame::new(&camera, &Render::new(Integrator::Lecture, [33, 33]))
+        camera.frame(&Render::new(Integrator::Lecture, [33, 33]))
     }
 
     /// Whether one of many rays from the eye meets something before it reaches the plane. They leave gaps.

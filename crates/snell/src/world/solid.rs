@@ -1,47 +1,13 @@
-//! Solids: what encloses a medium, and which primitives are its surface.
+//! Which solids a scene has, and which of them may touch something.
 
-use super::material::NONE;
-use super::{NO_PRIMITIVE, World};
-use crate::color::Rgb;
+use super::builder::Builder;
 use crate::geometry::bvh::{Instance, Shapes};
 use crate::geometry::solid::{Component, EdgePlace, Found, Orientation, Report, Verdict, structure};
 use crate::geometry::{Affine, Bounds, TriangleMesh, Vec3};
-
-/// "No solid", where the number of one is expected: a primitive that lets no light through.
-pub(crate) const NO_SOLID: u32 = u32::MAX;
+use crate::stage::{Medium, NO_PRIMITIVE, NO_SOLID, NONE, Solid};
 
 /// More solids than this, among as many objects, are not compared with each other: all count as touching.
 const COMPARED: usize = 2000;
-
-/// A closed surface with a medium inside.
-#[derive(Clone, Debug)]
-pub(crate) struct Solid {
-    /// What it is made of.
-    pub medium: Medium,
-    /// Do its faces look inward?
-    pub inward: bool,
-    /// May it touch something else, so that a ray meets both in one place?
-    pub touches: bool,
-    /// For a medium between interfaces, which has no surface of its own: the number of its material.
-    pub between_faces_of: Option<u32>,
-    /// One of its primitives.
-    pub primitive: u32,
-    /// Its box.
-    pub bounds: Bounds,
-}
-
-/// What fills a solid.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Medium {
-    /// Index of refraction, of all colours or of the d line.
-    pub eta: f64,
-    /// Where the indices of the bands stand in [`World::spectra`], if they differ.
-    pub spectrum: Option<u32>,
-    /// Absorption per scene unit.
-    pub sigma_a: Rgb,
-    /// Where solids overlap, the highest is there.
-    pub priority: i32,
-}
 
 /// The solids of a mesh: one for each component that is not the wall of a cavity, which belongs to the solid around it.
 pub(super) struct MeshSolids {
@@ -133,41 +99,30 @@ fn why_not(report: &Report) -> String {
     }
 }
 
-impl Solid {
-    /// The same solid where an instance stands.
-    pub fn placed(&self, map: &Affine) -> Self {
-        let bounds = Bounds::of(self.bounds.corners().map(|corner| map.apply(corner)));
-        Self { inward: self.inward != map.mirrors(), bounds, ..self.clone() }
-    }
+/// The same solid where an instance stands.
+pub(super) fn placed(solid: &Solid, map: &Affine) -> Solid {
+    let bounds = Bounds::of(solid.bounds.corners().map(|corner| map.apply(corner)));
+    Solid { inward: solid.inward != map.mirrors(), bounds, ..solid.clone() }
 }
 
-impl World {
+impl Builder<'_> {
     /// The medium of a material.
     pub(super) fn medium_of(&self, material: u32) -> Medium {
-        let m = &self.materials[material as usize];
+        let m = &self.stage.materials[material as usize];
         let spectrum = (m.spectrum != NONE).then_some(m.spectrum);
         Medium { eta: m.eta, spectrum, sigma_a: m.sigma_a, priority: m.priority }
     }
 
-    /// The index of a material for a band of light.
-    pub(crate) fn eta_of(&self, material: u32, band: Option<u32>) -> f64 {
-        let m = &self.materials[material as usize];
-        match band {
-            Some(band) if m.spectrum != NONE => self.spectra[m.spectrum as usize][band as usize],
-            _ => m.eta,
-        }
-    }
-
     /// Which solids may touch something: those whose box meets that of another solid or object.
     pub(super) fn touching(&self, shapes: &Shapes<'_>, instances: &[Instance]) -> Vec<bool> {
-        if self.solids.is_empty() {
+        if self.stage.solids.is_empty() {
             return Vec::new();
         }
         // The boxes of the solids first, then those of everything that is none.
-        let mut boxes: Vec<Bounds> = self.solids.iter().map(|solid| solid.bounds).collect();
+        let mut boxes: Vec<Bounds> = self.stage.solids.iter().map(|solid| solid.bounds).collect();
         for object in &self.objects {
             let mut opaque = (object.first as usize..(object.first + object.count) as usize)
-                .filter(|&id| self.interior_of(id) == NO_SOLID);
+                .filter(|&id| self.stage.interior_of(id) == NO_SOLID);
             if object.first as usize >= shapes.count() {
                 let instance = instances.iter().find(|i| i.first == object.first);
                 boxes.extend(instance.filter(|_| opaque.next().is_some()).map(|i| i.bounds));
@@ -175,61 +130,35 @@ impl World {
                 boxes.extend(opaque.map(|id| shapes.bounds(id)).reduce(Bounds::union));
             }
         }
-        let room = Vec3::new(self.coincidence_tolerance, self.coincidence_tolerance, self.coincidence_tolerance);
-        let too_many = self.solids.len().saturating_mul(boxes.len()) > COMPARED * COMPARED;
+        let room = Vec3::new(
+            self.stage.coincidence_tolerance,
+            self.stage.coincidence_tolerance,
+            self.stage.coincidence_tolerance,
+        );
+        let too_many = self.stage.solids.len().saturating_mul(boxes.len()) > COMPARED * COMPARED;
         let touches = |number: usize| {
             let grown = Bounds { min: boxes[number].min - room, max: boxes[number].max + room };
-            let interface = self.solids[number].between_faces_of.is_some();
+            let interface = self.stage.solids[number].between_faces_of.is_some();
             too_many
                 || interface
                 || boxes.iter().enumerate().any(|(other, bounds)| other != number && grown.meets(bounds))
         };
-        (0..self.solids.len()).map(touches).collect()
-    }
-
-    /// The solid whose surface a primitive is, or [`NO_SOLID`].
-    #[inline(always)]
-    pub(crate) fn interior_of(&self, primitive: usize) -> u32 {
-        match self.surfaces.interior_of.get(primitive) {
-            Some(&solid) => solid,
-            None => self.solid_in_model(primitive),
-        }
+        (0..self.stage.solids.len()).map(touches).collect()
     }
 
     /// Gives each solid one of its primitives, the first.
     pub(super) fn find_primitives(&mut self) {
-        if self.solids.is_empty() {
+        if self.stage.solids.is_empty() {
             return;
         }
         for primitive in 0..self.primitive_count() as u32 {
-            for solid in [self.interior_of(primitive as usize), self.exterior_of(primitive as usize)] {
-                if let Some(solid) = self.solids.get_mut(solid as usize)
+            for solid in [self.stage.interior_of(primitive as usize), self.stage.exterior_of(primitive as usize)] {
+                if let Some(solid) = self.stage.solids.get_mut(solid as usize)
                     && solid.primitive == NO_PRIMITIVE
                 {
                     solid.primitive = primitive;
                 }
             }
         }
-    }
-
-    /// The solid in front of a primitive, if that is an interface between two; or [`NO_SOLID`].
-    #[inline(always)]
-    pub(crate) fn exterior_of(&self, primitive: usize) -> u32 {
-        self.surfaces.exterior_of.get(primitive).copied().unwrap_or(NO_SOLID)
-    }
-
-    fn solid_in_model(&self, primitive: usize) -> u32 {
-        let Some((placement, id)) = self.placement(primitive) else { return NO_SOLID };
-        match self.models[placement.model].interior_of.get(id) {
-            Some(&solid) if solid != NO_SOLID => placement.first_solid + solid,
-            _ => NO_SOLID,
-        }
-    }
-
-    /// Does a ray that crosses a primitive of this solid at `t` enter it?
-    pub(crate) fn enters(&self, primitive: usize, solid: u32, origin: Vec3, dir: Vec3, t: f64) -> bool {
-        let mirrored = self.placement(primitive).is_some_and(|(placement, _)| placement.to_world.mirrors());
-        let enters = self.ask_of_ray(primitive, (origin, dir), |surface, origin, dir| surface.enters(origin, dir, t));
-        enters != (self.solids[solid as usize].inward != mirrored)
     }
 }

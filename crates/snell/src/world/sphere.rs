@@ -1,19 +1,15 @@
 //! From the spheres of a scene to those of the world.
 
-use super::mesh::MaterialIds;
-use super::{NO_SOLID, Object, Solid, World};
+use super::Object;
+use super::builder::Builder;
 use crate::geometry::shape::Surface;
 use crate::geometry::{Affine, Sphere, Vec3};
 use crate::scene::{self, LARGEST_NUMBER, Problem, Step, Warning, WarningCode, whole_map};
+use crate::stage::{NO_SOLID, Solid};
 
-impl World {
+impl Builder<'_> {
     /// Adds a sphere in all of its places.
-    pub(super) fn add_sphere(
-        &mut self,
-        index: usize,
-        sphere: &scene::Sphere,
-        material_ids: &MaterialIds<'_>,
-    ) -> Result<(), Problem> {
+    pub(super) fn add_sphere(&mut self, index: usize, sphere: &scene::Sphere) -> Result<(), Problem> {
         let own = whole_map(&sphere.transform);
         let places: Vec<Affine> = if sphere.instances.is_empty() {
             vec![own]
@@ -41,28 +37,28 @@ impl World {
                 let message = "this scales the sphere to radius 0: it is invisible".to_owned();
                 self.warnings.push(Warning { code: WarningCode::InvisibleSphere, place, message });
             }
-            self.place_sphere(index, sphere, material_ids, Sphere { center, radius });
-            if map != Affine::IDENTITY || !self.sphere_turns.is_empty() {
+            self.place_sphere(index, sphere, Sphere { center, radius });
+            if map != Affine::IDENTITY || !self.stage.sphere_turns.is_empty() {
                 // Without its length, which texture coordinates do not depend on, the inverse of a turn is there always.
-                self.sphere_turns.resize(self.spheres.len() - 1, Affine::IDENTITY);
-                self.sphere_turns.push(map.inverse().unwrap_or(Affine::IDENTITY));
+                self.stage.sphere_turns.resize(self.stage.spheres.len() - 1, Affine::IDENTITY);
+                self.stage.sphere_turns.push(map.inverse().unwrap_or(Affine::IDENTITY));
             }
         }
         Ok(())
     }
 
-    fn place_sphere(&mut self, index: usize, sphere: &scene::Sphere, material_ids: &MaterialIds<'_>, placed: Sphere) {
+    fn place_sphere(&mut self, index: usize, sphere: &scene::Sphere, placed: Sphere) {
         let name = sphere.name.clone().unwrap_or_else(|| format!("sphere {}", index + 1));
-        let id = self.spheres.len();
+        let id = self.stage.spheres.len();
         self.objects.push(Object { name, first: id as u32, count: 1 });
-        self.spheres.push(placed);
-        let material = material_ids.get(sphere.material.as_str()).copied().unwrap_or(0);
-        self.surfaces.material_of.push(material);
+        self.stage.spheres.push(placed);
+        let material = self.material_ids.get(sphere.material.as_str()).copied().unwrap_or(0);
+        self.stage.surfaces.material_of.push(material);
         if self.refracts(material) {
-            self.surfaces.interior_of.resize(id, NO_SOLID);
-            self.surfaces.interior_of.push(self.solids.len() as u32);
+            self.stage.surfaces.interior_of.resize(id, NO_SOLID);
+            self.stage.surfaces.interior_of.push(self.stage.solids.len() as u32);
             let (medium, bounds) = (self.medium_of(material), placed.bounds());
-            self.solids.push(Solid {
+            self.stage.solids.push(Solid {
                 medium,
                 inward: false,
                 touches: false,

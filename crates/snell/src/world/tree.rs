@@ -1,36 +1,38 @@
 //! The tree over everything, with the trees of the models and the places where they stand.
 
-use super::mesh::{Parts, Triangles, Which};
-use super::surface::Placement;
-use super::{NO_PRIMITIVE, Object, World};
+use super::Object;
+use super::builder::Builder;
+use super::mesh::{Triangles, Which};
+use super::solid::placed;
 use crate::geometry::Bounds;
-use crate::geometry::bvh::{Bvh, Instance, MARGIN, Quality, Shapes};
+use crate::geometry::bvh::{self, Instance, MARGIN, Quality, Shapes};
 use crate::scene::{LARGEST_NUMBER, Problem, Step};
+use crate::stage::{NO_PRIMITIVE, Placement};
 
-impl World {
-    pub(super) fn build_tree(&mut self, parts: &Parts, quality: Quality, threads: usize) -> Result<(), Problem> {
+impl Builder<'_> {
+    pub(super) fn build_tree(&mut self, quality: Quality, threads: usize) -> Result<(), Problem> {
         let problem = |(kind, index): Which, message: String| {
             let place = vec![Step::from(kind), Step::from(index), Step::from("instances")];
             Problem { place, message, help: None, remedy: None }
         };
         let shapes = Shapes {
-            spheres: &self.spheres,
-            triangles: parts.triangles.list(),
-            rectangles: &parts.rectangles,
-            cuboids: &parts.cuboids,
-            discs: &parts.discs,
+            spheres: &self.stage.spheres,
+            triangles: self.parts.triangles.list(),
+            rectangles: &self.parts.rectangles,
+            cuboids: &self.parts.cuboids,
+            discs: &self.parts.discs,
             instances: &[],
         };
-        if shapes.count() + parts.placed.len() >= 1 << 31 {
+        if shapes.count() + self.parts.placed.len() >= 1 << 31 {
             let message = "more than 2 billion shapes and triangles".to_owned();
             return Err(Problem { place: vec![Step::from("mesh")], message, help: None, remedy: None });
         }
         // Rays start at the camera or on surfaces; no ray origin is farther from a primitive than this.
-        let starts = self.camera.starts();
+        let starts = self.stage.camera.starts();
         let mut everything = (0..shapes.count()).map(|i| shapes.bounds(i)).fold(starts, Bounds::union);
-        let mut boxes = Vec::with_capacity(parts.placed.len());
-        for (which, name, model, map) in &parts.placed {
-            let Triangles { vertices, faces } = &parts.models[*model];
+        let mut boxes = Vec::with_capacity(self.parts.placed.len());
+        for (which, name, model, map) in &self.parts.placed {
+            let Triangles { vertices, faces } = &self.parts.models[*model];
             // Vertices of no face may lie anywhere, and must not make the boxes of others larger.
             let vertices = if faces.is_empty() { &[] } else { vertices.as_slice() };
             let bounds = Bounds::of(vertices.iter().map(|&v| map.apply(v)));
@@ -41,33 +43,33 @@ impl World {
             boxes.push(bounds);
         }
         let (reach, farthest) = (everything.diagonal(), everything.farthest());
-        self.reach = reach;
-        self.coincidence_tolerance = MARGIN * (reach + farthest);
+        self.stage.reach = reach;
+        self.stage.coincidence_tolerance = MARGIN * (reach + farthest);
         // In the space of a model rays come from everywhere that any of its instances sees, and start a little behind.
-        let mut seen: Vec<Bounds> = parts.models.iter().map(|m| Bounds::of(m.vertices.iter().copied())).collect();
-        let mut norms = vec![0.0; parts.models.len()];
-        let mut instances = Vec::with_capacity(parts.placed.len());
-        let mut first = self.surfaces.material_of.len();
-        for ((which, name, model, map), bounds) in parts.placed.iter().zip(boxes) {
+        let mut seen: Vec<Bounds> = self.parts.models.iter().map(|m| Bounds::of(m.vertices.iter().copied())).collect();
+        let mut norms = vec![0.0; self.parts.models.len()];
+        let mut instances = Vec::with_capacity(self.parts.placed.len());
+        let mut first = self.stage.surfaces.material_of.len();
+        for ((which, name, model, map), bounds) in self.parts.placed.iter().zip(boxes) {
             let instance = Instance::new(*model, map, first as u32, bounds, reach, farthest);
             let flat = || problem(*which, format!("an instance of `{name}` is scaled by 0"));
             let instance = instance.ok_or_else(flat)?;
-            self.coincidence_tolerance = self.coincidence_tolerance.max(instance.off);
+            self.stage.coincidence_tolerance = self.stage.coincidence_tolerance.max(instance.off);
             norms[*model] = instance.to_model.norm().max(norms[*model]);
             seen[*model] = seen[*model].union(Bounds::of(everything.corners().map(|c| instance.to_model.apply(c))));
-            let count = self.models[*model].material_of.len();
+            let count = self.stage.models[*model].material_of.len();
             self.objects.push(Object { name: name.clone(), first: first as u32, count: count as u32 });
             let placement = Placement {
                 model: *model,
                 first: first as u32,
-                first_solid: self.solids.len() as u32,
+                first_solid: self.stage.solids.len() as u32,
                 to_world: *map,
                 to_model: instance.to_model,
                 bounds: instance.bounds,
             };
-            self.solids.extend(parts.solids[*model].iter().map(|solid| solid.placed(map)));
+            self.stage.solids.extend(self.parts.solids[*model].iter().map(|solid| placed(solid, map)));
             if count > 0 {
-                self.placements.push(placement);
+                self.stage.placements.push(placement);
                 instances.push(instance);
             }
             first += count;
@@ -75,17 +77,17 @@ impl World {
                 return Err(problem(*which, "more than 4 billion triangles in all places together".to_owned()));
             }
         }
-        self.exit_tolerance = 0.5 * self.coincidence_tolerance;
-        let models = parts.models.iter().zip(seen.iter().zip(norms)).map(|(model, (seen, norm))| {
+        self.stage.exit_tolerance = 0.5 * self.stage.coincidence_tolerance;
+        let models = self.parts.models.iter().zip(seen.iter().zip(norms)).map(|(model, (seen, norm))| {
             let shapes = Shapes { triangles: model.list(), ..Shapes::default() };
-            let margin = (MARGIN * (seen.diagonal() + seen.farthest())).max(norm * self.coincidence_tolerance);
-            Bvh::build(&shapes, vec![], margin, quality, threads)
+            let margin = (MARGIN * (seen.diagonal() + seen.farthest())).max(norm * self.stage.coincidence_tolerance);
+            bvh::build(&shapes, vec![], margin, quality, threads)
         });
         let models = models.collect();
         let touching = self.touching(&shapes, &instances);
         let shapes = Shapes { instances: &instances, ..shapes };
-        self.tree = Bvh::build(&shapes, models, self.coincidence_tolerance, quality, threads);
-        for (solid, touches) in self.solids.iter_mut().zip(touching) {
+        self.stage.tree = bvh::build(&shapes, models, self.stage.coincidence_tolerance, quality, threads);
+        for (solid, touches) in self.stage.solids.iter_mut().zip(touching) {
             solid.touches = touches;
         }
         self.find_primitives();

@@ -36,12 +36,12 @@ pub fn mesh(scene: &mut Scene, geometry: TriangleMesh, material: &str) {
 }
 
 pub fn picture(scene: &Scene) -> Film {
-    render(&World::new(scene).unwrap(), &Settings::of(scene), &Options::default()).unwrap().film
+    render(&World::new(scene).unwrap(), &Settings::from(scene), &Options::default()).unwrap().film
 }
 
 /// A pixel of one sample, and its tree.
 pub fn traced(scene: &Scene, world: &World, x: u32, y: u32) -> (Rgb, RayTree) {
-    let mut pixel = trace_pixel(world, &Settings::of(scene), x, y).unwrap();
+    let mut pixel = trace_pixel(world, &Settings::from(scene), x, y).unwrap();
     (pixel.radiance, pixel.samples.remove(0))
 }
 

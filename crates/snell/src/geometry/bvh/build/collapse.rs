@@ -3,8 +3,9 @@
 //! GPUs Through Compressed Wide BVHs*, 2017, section 3.1).
 
 use super::item::Extent;
+use super::{Leaf, Tree};
 use crate::geometry::bounds::OuterBox;
-use crate::geometry::bvh::node::{Child, Leaf, Node, Tree, WIDTH};
+use crate::geometry::bvh::node::{Child, Node, WIDTH};
 use rayon::prelude::*;
 
 /// Cost of visiting a node: of testing a ray against its eight boxes.

@@ -11,7 +11,7 @@ mod division;
 mod item;
 mod reinsertion;
 
-use super::node::{Tree, WIDTH};
+use super::node::{MAX_DEPTH, Node};
 use crate::geometry::bounds::OuterBox;
 use binned::{Bins, Grid, Split};
 use collapse::{Binary, Costs, Piece};
@@ -20,10 +20,6 @@ use rayon::prelude::*;
 
 /// From this depth on nodes are halved, and 2^32 primitives are used up after 32 more levels.
 const SAH_DEPTH: usize = 64;
-/// No tree is deeper: no way down passes more nodes. Real ones have about ten levels.
-pub(super) const MAX_DEPTH: usize = SAH_DEPTH + 33;
-/// Boxes that can wait for a ray on its way down: all but one of each node that it passes.
-pub(super) const MOST_WAITING: usize = (WIDTH - 1) * MAX_DEPTH;
 /// Fewer primitives are not worth a second thread.
 const PARALLEL: usize = 1 << 12;
 
@@ -44,6 +40,26 @@ pub enum Quality {
 /// `parallel`: with all threads of the pool it is called in.
 pub(super) fn build(count: usize, bounds: impl Fn(usize) -> OuterBox + Sync, quality: Quality, parallel: bool) -> Tree {
     Builder { quality, parallel: parallel && count > PARALLEL }.build(count, &bounds)
+}
+
+/// `count` (1..=8) primitives from `first` on in [`Tree::order`].
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Leaf {
+    pub first: u32,
+    pub count: u32,
+}
+
+/// A tree over primitives that it knows only by number.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Tree {
+    /// The first is the root, also for a single primitive; without primitives there is none. Each stands before those
+    /// below it.
+    pub nodes: Vec<Node>,
+    pub leaves: Vec<Leaf>,
+    /// The primitives, leaf by leaf, in each leaf in ascending order.
+    pub order: Vec<u32>,
+    /// Nodes on the longest way down; at most [`MAX_DEPTH`].
+    pub depth: usize,
 }
 
 struct Builder {
