@@ -1,27 +1,35 @@
-"""The folders of the engine are rooms in an order: each may use those above it in this list, and none below."""
+"""The folders of kernels and engine are rooms in an order: each may use those above it in this list, and none below."""
 
 import re
 from pathlib import Path
 
-ENGINE = Path(__file__).resolve().parent.parent / "crates/snell/src"
+import pytest
 
-ROOMS = [
-    "lanes",
-    "color",
-    "memory",
-    "threads",
-    "geometry",
-    "optics",
-    "film",
-    "texture",
-    "scene",
-    "world",
-    "trace",
-    "integrate",
-    "render",
-    "rays",
-    "explain",
-]
+CRATES = Path(__file__).resolve().parent.parent / "crates"
+
+ROOMS = {
+    "snell-kernels": ["lanes", "color", "geometry", "optics", "texture", "settings", "stage", "trace", "integrate"],
+    # Those of the kernels first; where it has a room of the same name, that adds to theirs.
+    "snell": [
+        "lanes",
+        "color",
+        "texture",
+        "settings",
+        "stage",
+        "trace",
+        "integrate",
+        "memory",
+        "threads",
+        "geometry",
+        "optics",
+        "film",
+        "scene",
+        "world",
+        "render",
+        "rays",
+        "explain",
+    ],
+}
 
 COMMENT = re.compile(r"//.*")
 TESTS = re.compile(r"#\[cfg\(test\)\]\n(?:pub(?:\(crate\))? )?mod (\w+)(;| \{)")
@@ -35,10 +43,10 @@ def code(path: Path) -> str:
     return COMMENT.sub("", text[: inner[0].start()] if inner else text)
 
 
-def only_for_tests() -> set[Path]:
+def only_for_tests(source: Path) -> set[Path]:
     """Modules that are compiled for tests only."""
     found: set[Path] = set()
-    for path in ENGINE.rglob("*.rs"):
+    for path in source.rglob("*.rs"):
         folder = path.parent if path.name in ("mod.rs", "lib.rs") else path.with_suffix("")
         for match in TESTS.finditer(path.read_text(encoding="utf-8")):
             if match.group(2) == ";":
@@ -46,18 +54,16 @@ def only_for_tests() -> set[Path]:
     return found
 
 
-def room_of(path: Path) -> str:
-    return path.relative_to(ENGINE).parts[0].removesuffix(".rs")
-
-
-def test_no_arrow_points_up() -> None:
+@pytest.mark.parametrize("crate", ROOMS)
+def test_no_arrow_points_up(crate: str) -> None:
+    source, rooms = CRATES / crate / "src", ROOMS[crate]
     wrong, arrows = [], 0
-    for path in sorted(set(ENGINE.rglob("*.rs")) - only_for_tests() - {ENGINE / "lib.rs"}):
-        room = room_of(path)
-        assert room in ROOMS, f"{path}: {room} has no place in the list"
+    for path in sorted(set(source.rglob("*.rs")) - only_for_tests(source) - {source / "lib.rs"}):
+        room = path.relative_to(source).parts[0].removesuffix(".rs")
+        assert room in rooms, f"{path}: {room} has no place in the list"
         for used in sorted(set(re.findall(r"\bcrate::(\w+)", code(path))) - {room}):
             arrows += 1
-            if used not in ROOMS or ROOMS.index(used) > ROOMS.index(room):
-                wrong.append(f"{path.relative_to(ENGINE)} uses {used}, which stands above {room}")
+            if used not in rooms or rooms.index(used) > rooms.index(room):
+                wrong.append(f"{path.relative_to(source)} uses {used}, which stands above {room}")
     assert not wrong, "\n".join(wrong)
-    assert arrows > 100, f"only {arrows} uses were found: is the list of what to look for still right?"
+    assert arrows > 50, f"only {arrows} uses were found: is the list of what to look for still right?"

@@ -57,7 +57,7 @@ fn compare(row: &[&str], nature: f64, snell: f64) {
 fn every_test_and_function_that_is_named_exists() {
     let mut sources = String::new();
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    for folder in ["crates/snell", "crates/snell-formats", "tests"] {
+    for folder in ["crates/snell", "crates/snell-kernels", "crates/snell-formats", "tests"] {
         read_all(&root.join(folder), &mut sources);
     }
     let quoted = PAGE.split('`').skip(1).step_by(2);
