@@ -42,6 +42,10 @@ kernels_are_inlined() {
         return 1
     fi
 }
+# No threads, no files, no standard library: rustc refuses what is not there.
+kernels_alone() {
+    cargo build --locked --quiet --package snell-kernels --no-default-features --target wasm32-unknown-unknown --profile ci
+}
 same_bits_in_wasm() {
     cargo build --locked --quiet --package snell-wasm-test --target wasm32-unknown-unknown --profile ci
     target/ci/snell-test-scenes >target/same-bits-native.txt
@@ -68,6 +72,7 @@ stage 'a notebook in JupyterLab, in Chromium' jupyterlab
 stage 'documentation' documentation
 stage 'fuzz targets compile' cargo check --locked --quiet --manifest-path fuzz/Cargo.toml --target-dir target/fuzz
 stage 'the library for ARM' cargo check --locked --quiet --package snell --target aarch64-unknown-linux-gnu --profile ci
+stage 'the kernels without the standard library' kernels_alone
 stage 'the same bits in WASM' same_bits_in_wasm
 
 printf '\n── all passed\n'

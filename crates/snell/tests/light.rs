@@ -12,7 +12,7 @@ use snell::scene::{
     Camera, Cuboid, Integrator, Light, Material, Plane, Render, Scene, Shadows, Sky, Transform, WarningCode,
 };
 use snell::trace::Statistics;
-use snell::world::{CameraFrame, World};
+use snell::world::World;
 use snell_formats::scene_file::{self, Syntax};
 use snell_formats::{LoadOptions, Source};
 use snell_test_scenes::brilliant::Cut;

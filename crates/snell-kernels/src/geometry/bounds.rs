@@ -19,11 +19,13 @@ impl Bounds {
     };
 
     /// The box of some points.
+    #[inline]
     pub fn of(points: impl IntoIterator<Item = Vec3>) -> Self {
         points.into_iter().fold(Self::EMPTY, |b, p| b.union(Self { min: p, max: p }))
     }
 
     /// The box of two boxes.
+    #[inline]
     pub fn union(self, other: Self) -> Self {
         let (a, b) = (self, other);
         Self {
@@ -33,6 +35,7 @@ impl Bounds {
     }
 
     /// Do two boxes have a point in common?
+    #[inline]
     pub fn meets(&self, other: &Self) -> bool {
         let (a, b) = (self, other);
         let shared = |axis: usize| {
@@ -42,6 +45,7 @@ impl Bounds {
     }
 
     /// The eight corners.
+    #[inline]
     pub fn corners(&self) -> [Vec3; 8] {
         let (a, b) = (self.min, self.max);
         core::array::from_fn(|i| {
@@ -51,12 +55,14 @@ impl Bounds {
     }
 
     /// The largest coordinate, whatever its sign.
+    #[inline]
     pub fn farthest(&self) -> f64 {
         let numbers = [self.min.x, self.min.y, self.min.z, self.max.x, self.max.y, self.max.z];
         numbers.into_iter().map(f64::abs).fold(0.0, f64::max)
     }
 
     /// Length of the diagonal; 0 for the empty box.
+    #[inline]
     pub fn diagonal(&self) -> f64 {
         if self.min.x > self.max.x { 0.0 } else { (self.max - self.min).length() }
     }
@@ -74,6 +80,7 @@ pub struct OuterBox {
 impl OuterBox {
     /// Grows a box by `margin` on every side and rounds it outward, at least to the next `f32`: where the margin is
     /// below a unit in the last place of a coordinate, and would be lost, that step is larger than it.
+    #[inline]
     pub fn around(bounds: &Bounds, margin: f64) -> Self {
         let b = bounds;
         Self {
@@ -83,11 +90,13 @@ impl OuterBox {
     }
 }
 
+#[inline]
 fn round_down(value: f64) -> f32 {
     let near = value as f32;
     if f64::from(near) >= value { near.next_down() } else { near }
 }
 
+#[inline]
 fn round_up(value: f64) -> f32 {
     -round_down(-value)
 }

@@ -7,7 +7,7 @@ use crate::geometry::bvh::{Bvh, Shapes, primitives::Primitives};
 use crate::geometry::{Sphere, Vec3};
 use crate::lanes::{Instructions, Kernel, Lanes, Mask, dispatch, record};
 use crate::settings::{self, Settings, Shadows};
-use crate::stage::{CameraFrame, CompiledMaterial, NONE, Stage};
+use crate::stage::{CameraFrame, CompiledMaterial, Stage};
 use crate::trace::{Batch, Children, FirstSurface, Integrator, Most, RayKind, Tile, Tracer};
 use alloc::vec;
 use alloc::vec::Vec;
@@ -84,7 +84,8 @@ fn normals_as_colours() {
     let balls = [-2.0, 8.0].map(|z| Sphere { center: Vec3::new(0.0, 0.0, z), radius: 1.0 });
     let shapes = Shapes { spheres: &balls, ..Shapes::default() };
     let tree = Bvh::new(Vec::new(), Primitives::default(), 0, &shapes, Vec::new());
-    let mut stage = Stage { spheres: balls.to_vec(), materials: vec![any_material()], tree, ..Stage::new(camera) };
+    let mut stage =
+        Stage { spheres: balls.to_vec(), materials: vec![CompiledMaterial::BLACK], tree, ..Stage::new(camera) };
     stage.surfaces.material_of = vec![0; balls.len()];
     let settings = Settings {
         integrator: settings::Integrator::Lecture,
@@ -99,26 +100,5 @@ fn normals_as_colours() {
         // ½·z, then ¼·(−z) from the ball behind the camera, then ⅛·z.
         assert_eq!(pixels[2], Rgb::new(0.0, 0.0, 0.5 - 0.25 + 0.125));
         assert_eq!((pixels[0], pixels[4]), (Rgb::gray(0.0), Rgb::gray(0.0)), "beside them is nothing");
-    }
-}
-
-fn any_material() -> CompiledMaterial {
-    let black = Rgb::gray(0.0);
-    CompiledMaterial {
-        ka: black,
-        kd: black,
-        ks: black,
-        kr: black,
-        ko: Rgb::gray(1.0),
-        spow: 1.0,
-        emission: black,
-        eta: 1.0,
-        sigma_a: black,
-        thickness: -1.0,
-        priority: 0,
-        tints: 0.0,
-        spectrum: NONE,
-        pattern: NONE,
-        has_holes: false,
     }
 }

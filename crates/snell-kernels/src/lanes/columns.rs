@@ -34,7 +34,7 @@ impl<const N: usize> Default for Columns<N> {
 impl<const N: usize> Columns<N> {
     /// How many rows.
     #[inline(always)]
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.len
     }
 
@@ -139,7 +139,7 @@ impl<const N: usize> Columns<N> {
 
     /// Appends the lanes that the mask names, of the first `used` columns only, in lane order.
     #[inline(always)]
-    pub fn push_first<L: Lanes>(&mut self, used: usize, mask: L::Mask, value: impl Fn(usize) -> L) {
+    pub(crate) fn push_first<L: Lanes>(&mut self, used: usize, mask: L::Mask, value: impl Fn(usize) -> L) {
         assert!(used <= N, "no column {used}");
         self.reserve(L::WIDTH);
         let (start, room, count) = (self.len, self.room, mask.bits().count_ones() as usize);

@@ -80,6 +80,8 @@ type Two = ArrayLanes<2>;
 
 /// Does some work with so many lanes, 1, 2, 4 or 8, and with the best of these instructions; another number counts as 1.
 pub fn dispatch<K: Kernel>(lanes: usize, instructions: Instructions, kernel: K) -> K::Output {
+    #[cfg(not(target_arch = "x86_64"))]
+    let Instructions { .. } = instructions;
     match lanes {
         2 => Two::call(kernel),
         #[cfg(target_arch = "x86_64")]

@@ -112,7 +112,7 @@ macro_rules! table {
             /// How many rows.
             #[allow(dead_code, reason = "one table of several tells the length of all")]
             #[inline(always)]
-            pub fn len(&self) -> usize {
+            pub(crate) fn len(&self) -> usize {
                 self.0.len()
             }
 

@@ -41,6 +41,28 @@ pub struct CompiledMaterial {
 }
 
 impl CompiledMaterial {
+    /// Opaque, and neither reflects nor sends out any light.
+    pub const BLACK: Self = {
+        let black = Rgb::gray(0.0);
+        Self {
+            ka: black,
+            kd: black,
+            ks: black,
+            kr: black,
+            ko: Rgb::gray(1.0),
+            spow: 1.0,
+            emission: black,
+            eta: 1.0,
+            sigma_a: black,
+            thickness: -1.0,
+            priority: 0,
+            tints: 0.0,
+            spectrum: NONE,
+            pattern: NONE,
+            has_holes: false,
+        }
+    };
+
     /// Does light go through it? `Σko < 3`, as in the lecture.
     pub fn is_transparent(&self) -> bool {
         self.ko.to_array().iter().sum::<f64>() < 3.0

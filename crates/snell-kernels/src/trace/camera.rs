@@ -45,7 +45,7 @@ impl<'a, P: Propagation> CameraRays<'a, P> {
     /// Takes a sample of each pixel of a tile.
     pub fn aim(&mut self, tile: &Tile, sample: u32) {
         self.places.clear();
-        self.places.resize(tile.len());
+        self.places.resize(tile.pixel_count());
         let [across, up] = self.places.columns_mut();
         let width = tile.width as usize;
         let rows = across.chunks_mut(width).zip(up.chunks_mut(width));

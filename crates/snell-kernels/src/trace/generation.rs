@@ -151,7 +151,7 @@ impl<'a, L: Lanes, O: Observer, I: Integrator> Tracer<'a, L, O, I> {
     /// Traces some samples of each pixel of a tile; `None` if it was cancelled on the way.
     #[inline(always)]
     pub fn trace(&mut self, tile: &Tile, samples: Range<u32>) -> Option<&mut TracedTile> {
-        let count = tile.len();
+        let count = tile.pixel_count();
         self.tile = *tile;
         self.spare_sums.extend(self.traced.sums.take().into_iter().map(|(_, sum)| sum));
         self.traced.lost.clear();
@@ -176,7 +176,7 @@ impl<'a, L: Lanes, O: Observer, I: Integrator> Tracer<'a, L, O, I> {
     /// Traces one ray for each pixel, with all that follows from it.
     #[inline(always)]
     fn trace_sample(&mut self) -> Option<()> {
-        let count = self.tile.len();
+        let count = self.tile.pixel_count();
         self.radiance.clear();
         self.radiance.resize(count, Rgb::black());
         self.rays_of.clear();

@@ -78,6 +78,9 @@ impl<T> PairwiseSum<T> {
     }
 
     /// Is this block surely apart from all that are there?
+    ///
+    /// # Errors
+    /// If some of them are there already.
     pub fn check(&self, block: Block) -> Result<usize, Twice> {
         let at = self.blocks.partition_point(|(other, _)| other.first < block.first);
         let neighbours = [at.checked_sub(1), Some(at)].into_iter().flatten().filter_map(|at| self.blocks.get(at));

@@ -22,7 +22,7 @@ impl Tile {
     }
 
     /// How many pixels.
-    pub fn len(&self) -> usize {
+    pub fn pixel_count(&self) -> usize {
         self.width as usize * self.height as usize
     }
 

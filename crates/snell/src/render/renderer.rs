@@ -316,7 +316,8 @@ impl<'a> Schedule<'a> {
         let Finished { tiles, statistics, turns: mut finished } =
             shared.result.into_inner().unwrap_or_else(PoisonError::into_inner);
         finished.sort_unstable();
-        self.samples += tiles.iter().map(|tile: &Tile| tile.len() as u64).sum::<u64>() * pass.samples.len() as u64;
+        self.samples +=
+            tiles.iter().map(|tile: &Tile| tile.pixel_count() as u64).sum::<u64>() * pass.samples.len() as u64;
         self.rays += statistics.rays.total();
         self.statistics.merge(&statistics);
         self.again.extend(turns.iter().filter(|turn| finished.binary_search(turn).is_err()));
@@ -414,7 +415,7 @@ impl<I: Integrator> Kernel for Worker<'_, '_, '_, I> {
             let Some(traced) = tracer.trace(&tile, shared.pass.samples.clone()) else { break };
             shared.store(band, &tile, traced);
             let statistics = std::mem::take(&mut tracer.statistics);
-            shared.report(tile.len() as u64 * shared.pass.samples.len() as u64, statistics.rays.total());
+            shared.report(tile.pixel_count() as u64 * shared.pass.samples.len() as u64, statistics.rays.total());
             mine.statistics.merge(&statistics);
             mine.tiles.push(tile);
             mine.turns.push(turn);

@@ -17,6 +17,7 @@ pub use snell_kernels::stage::{CameraFrame, NO_PRIMITIVE, Stage};
 use crate::geometry::Bounds;
 use crate::geometry::bvh::{Quality, TreeStatistics};
 use crate::scene::{Integrator, Problems, Scene, Warning};
+use crate::stage::Surfaces;
 use builder::Builder;
 use std::ops::Deref;
 
@@ -105,7 +106,7 @@ impl World {
     /// Bytes of geometry and tree.
     pub fn memory(&self) -> usize {
         let tree = self.tree.statistics();
-        let surfaces: usize = self.models.iter().chain([&self.surfaces]).map(|surfaces| surfaces.memory()).sum();
+        let surfaces: usize = self.models.iter().chain([&self.surfaces]).map(Surfaces::memory).sum();
         size_of_val(self.spheres.as_slice()) + surfaces + tree.node_bytes + tree.primitive_bytes
     }
 }

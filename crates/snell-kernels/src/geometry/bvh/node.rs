@@ -75,6 +75,7 @@ impl Run {
     }
 
     /// As it stands in a leaf in front of the run.
+    #[inline]
     pub fn number(self) -> f64 {
         self.bits() as f64
     }
@@ -93,16 +94,19 @@ impl Child {
     pub const ROOT: Self = Self(0);
 
     /// The node of this number.
+    #[inline]
     pub fn node(index: usize) -> Self {
         Self(index as u64)
     }
 
     /// The leaf of this number, while the tree is built.
+    #[inline]
     pub fn leaf(index: usize) -> Self {
         Self(index as u64 | 1 << TAG)
     }
 
     /// `at` is below 2⁴⁶, the count is at most 8.
+    #[inline]
     pub fn block(Block { at, run }: Block) -> Self {
         Self(at as u64 | run.bits() << PLACE | 2 << TAG)
     }
@@ -140,6 +144,7 @@ impl Child {
     }
 
     /// The same child in lists where `nodes` nodes and `leaves` leaves stand before it.
+    #[inline]
     pub fn moved(self, nodes: usize, leaves: usize) -> Self {
         match self.kind() {
             Kind::Node(n) => Self::node(n as usize + nodes),
@@ -173,12 +178,14 @@ impl Node {
     };
 
     /// The box in a place.
+    #[inline]
     pub fn bounds(&self, place: usize) -> OuterBox {
         let side = |side: usize| [0, 1, 2].map(|axis| self.planes[plane(axis, side)][place]);
         OuterBox { min: side(0), max: side(1) }
     }
 
     /// Puts a box into a place.
+    #[inline]
     pub fn set_bounds(&mut self, place: usize, bounds: &OuterBox) {
         for axis in 0..3 {
             self.planes[plane(axis, 0)][place] = bounds.min[axis];

@@ -204,14 +204,14 @@ impl<L: Lanes> Numbers<L> for Neighbours<'_> {
 /// Shapes in a row.
 pub trait ShapeList<S>: Copy + Default {
     /// How many.
-    fn len(self) -> usize;
+    fn count(self) -> usize;
     /// One of them.
     fn get(self, place: usize) -> S;
 }
 
 impl<S: Copy> ShapeList<S> for &[S] {
-    fn len(self) -> usize {
-        <[S]>::len(self)
+    fn count(self) -> usize {
+        self.len()
     }
 
     fn get(self, place: usize) -> S {
@@ -367,7 +367,7 @@ struct Count<'s, 'a>(&'s Shapes<'a>);
 impl ForKind for Count<'_, '_> {
     type Output = usize;
     fn run<S: Kind>(self) -> usize {
-        S::list(self.0).len()
+        S::list(self.0).count()
     }
 }
 

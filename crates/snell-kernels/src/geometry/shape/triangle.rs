@@ -41,7 +41,7 @@ pub struct Triangles<'a> {
 }
 
 impl ShapeList<Triangle> for Triangles<'_> {
-    fn len(self) -> usize {
+    fn count(self) -> usize {
         self.faces.len()
     }
 
