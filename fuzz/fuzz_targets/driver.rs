@@ -21,7 +21,7 @@ fuzz_target!(|bytes: &[u8]| {
                 driver.scene.render.size = [3, 2];
                 driver.scene.render.max_depth = driver.scene.render.max_depth.min(5);
                 if let Ok(world) = World::new(&driver.scene) {
-                    render(&world, &Settings::of(&driver.scene), &Options { threads: 1, ..Options::default() })
+                    render(&world, &Settings::from(&driver.scene), &Options { threads: 1, ..Options::default() })
                         .unwrap();
                 }
             }

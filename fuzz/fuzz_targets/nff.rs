@@ -18,7 +18,7 @@ fuzz_target!(|bytes: &[u8]| {
             nff.scene.render.size = [3, 2];
             nff.scene.render.max_depth = 2;
             if let Ok(world) = World::new(&nff.scene) {
-                render(&world, &Settings::of(&nff.scene), &Options { threads: 1, ..Options::default() }).unwrap();
+                render(&world, &Settings::from(&nff.scene), &Options { threads: 1, ..Options::default() }).unwrap();
             }
         }
     }

@@ -31,7 +31,7 @@ fuzz_target!(|bytes: &[u8]| {
                 scene.render.size = [3, 2];
                 scene.render.max_depth = scene.render.max_depth.min(5);
                 let world = World::new(&scene).unwrap();
-                render(&world, &Settings::of(&scene), &Options { threads: 1, ..Options::default() }).unwrap();
+                render(&world, &Settings::from(&scene), &Options { threads: 1, ..Options::default() }).unwrap();
             }
         }
     }
