@@ -1,5 +1,6 @@
 //! Materials as the kernels see them: plain numbers.
 
+use super::Medium;
 use crate::color::Rgb;
 
 /// "None", where the number of a spectrum or a pattern is expected.
@@ -66,6 +67,12 @@ impl CompiledMaterial {
     /// Does light go through it? `Σko < 3`, as in the lecture.
     pub fn is_transparent(&self) -> bool {
         self.ko.to_array().iter().sum::<f64>() < 3.0
+    }
+
+    /// What fills a solid of it.
+    pub fn medium(&self) -> Medium {
+        let spectrum = (self.spectrum != NONE).then_some(self.spectrum);
+        Medium { eta: self.eta, spectrum, sigma_a: self.sigma_a, priority: self.priority }
     }
 
     /// Is each of its faces a whole pane?

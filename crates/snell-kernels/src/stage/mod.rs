@@ -18,6 +18,7 @@ use crate::color::Rgb;
 use crate::geometry::bvh::Bvh;
 use crate::geometry::{Affine, Sphere};
 use crate::optics::spectrum::Band;
+use alloc::sync::Arc;
 use alloc::vec::Vec;
 use core::ops::Range;
 
@@ -25,6 +26,8 @@ use core::ops::Range;
 ///
 /// Primitives are numbered kind by kind, those of a kind in the order of the scene: spheres, triangles, planes, boxes, discs,
 /// then what stands in many places. At equal distance the lower number is hit.
+///
+/// What is large is shared by stages that differ in something else.
 #[derive(Clone, Debug)]
 pub struct Stage {
     /// The camera, placed.
@@ -46,9 +49,9 @@ pub struct Stage {
     /// How each sphere is turned back for its texture; empty where none is turned.
     pub sphere_turns: Vec<Affine>,
     /// Of the primitives that stand for themselves.
-    pub surfaces: Surfaces,
+    pub surfaces: Arc<Surfaces>,
     /// Of the meshes that stand in several places, and these places in the order of their ids.
-    pub models: Vec<Surfaces>,
+    pub models: Arc<Vec<Surfaces>>,
     /// Where models stand, in the order of their primitives.
     pub placements: Vec<Placement>,
     /// What light goes through, where there is real optics.
@@ -73,7 +76,7 @@ pub struct Stage {
     /// Is no triangle smooth?
     pub all_flat: bool,
     /// The tree, with the triangles in its leaves and the trees of the models.
-    pub tree: Bvh,
+    pub tree: Arc<Bvh>,
 }
 
 impl Stage {
@@ -89,8 +92,8 @@ impl Stage {
             materials: Vec::new(),
             spheres: Vec::new(),
             sphere_turns: Vec::new(),
-            surfaces: Surfaces::default(),
-            models: Vec::new(),
+            surfaces: Arc::default(),
+            models: Arc::default(),
             placements: Vec::new(),
             solids: Vec::new(),
             bands: Vec::new(),
@@ -102,7 +105,7 @@ impl Stage {
             coincidence_tolerance: 0.0,
             exit_tolerance: 0.0,
             all_flat: true,
-            tree: Bvh::default(),
+            tree: Arc::default(),
         }
     }
 

@@ -287,7 +287,7 @@ impl Stage {
     /// The texture coordinates at the corners of a triangle, if it has any.
     pub fn corner_uvs(&self, primitive: usize) -> Option<[[f64; 2]; 3]> {
         let (surfaces, id) = match self.placement(primitive) {
-            None => (&self.surfaces, primitive),
+            None => (self.surfaces.as_ref(), primitive),
             Some((placement, id)) => (&self.models[placement.model], id),
         };
         surfaces.corner_uvs.get(*surfaces.corner_uvs_of.get(id)? as usize).copied()

@@ -1,23 +1,34 @@
 //! From a scene to a world, part by part.
 
 use super::mesh::Parts;
+use super::tree::Ground;
 use super::{Object, World, light, material, texture};
+use crate::geometry::Bounds;
 use crate::geometry::bvh::Quality;
 use crate::optics::spectrum;
 use crate::scene::{Problem, Problems, Scene, Step, Warning, validate};
-use crate::stage::{FLAT, Pattern, Stage};
+use crate::stage::{FLAT, Pattern, Stage, Surfaces};
 use indexmap::IndexMap;
+use std::mem;
+use std::sync::Arc;
 
 /// What is there of a world, while its parts are added one after the other: those that are numbered first come first.
 pub(super) struct Builder<'a> {
     pub scene: &'a Scene,
     pub stage: Stage,
-    pub objects: Vec<Object>,
+    /// Of the primitives that stand for themselves, and of the models.
+    pub surfaces: Surfaces,
+    pub models: Vec<Surfaces>,
+    pub objects: Arc<Vec<Object>>,
+    /// Of the scene as it is written.
     pub warnings: Vec<Warning>,
+    /// Of the shapes, as they are compiled.
+    pub shape_warnings: Vec<Warning>,
     /// The numbers of materials, by their names.
     pub material_ids: IndexMap<&'a str, u32>,
     /// What trees are to be built of.
     pub parts: Parts,
+    pub ground: Ground,
 }
 
 impl<'a> Builder<'a> {
@@ -44,7 +55,18 @@ impl<'a> Builder<'a> {
         stage.has_alpha = has_alpha.contains(&true);
         (stage.materials, stage.spectra) = material::compile(scene, &stage.bands, &has_alpha);
         let material_ids = scene.materials.keys().enumerate().map(|(i, name)| (name.as_str(), i as u32)).collect();
-        Ok(Self { scene, stage, objects: Vec::new(), warnings, material_ids, parts: Parts::default() })
+        Ok(Self {
+            scene,
+            stage,
+            surfaces: Surfaces::default(),
+            models: Vec::new(),
+            objects: Arc::default(),
+            warnings,
+            shape_warnings: Vec::new(),
+            material_ids,
+            parts: Parts::default(),
+            ground: Ground { extent: Bounds::EMPTY, margin: 0.0 },
+        })
     }
 
     /// Adds what stands there, in the order of its numbers, and the tree over it.
@@ -53,7 +75,7 @@ impl<'a> Builder<'a> {
         for (i, sphere) in scene.spheres.iter().enumerate() {
             self.add_sphere(i, sphere)?;
         }
-        self.stage.surfaces.corner_normals_of.resize(self.stage.spheres.len(), FLAT);
+        self.surfaces.corner_normals_of.resize(self.stage.spheres.len(), FLAT);
         for (i, mesh) in scene.meshes.iter().enumerate() {
             self.add_mesh(("mesh", i), mesh)?;
         }
@@ -61,19 +83,27 @@ impl<'a> Builder<'a> {
             self.add_mesh(("lathe", i), &lathe.mesh(i))?;
         }
         self.add_shapes()?;
-        for surfaces in self.stage.models.iter_mut().chain([&mut self.stage.surfaces]) {
+        for surfaces in self.models.iter_mut().chain([&mut self.surfaces]) {
             self.stage.all_flat &= surfaces.corner_normals.is_empty();
             if surfaces.corner_normals.is_empty() {
                 surfaces.corner_normals_of = Vec::new();
             }
         }
+        self.stage.surfaces = Arc::new(mem::take(&mut self.surfaces));
+        self.stage.models = Arc::new(mem::take(&mut self.models));
         self.build_tree(quality, threads)?;
-        let Self { mut stage, objects, warnings, parts, .. } = self;
-        stage.objects = objects.iter().map(|object| object.first..object.first + object.count).collect();
-        let mut world = World { stage, objects, warnings };
-        world.find_lights_on_surfaces(scene, &parts);
+        self.stage.objects = self.objects.iter().map(|object| object.first..object.first + object.count).collect();
+        Ok(self.finish())
+    }
+
+    /// The world, with the warnings that need all of it.
+    pub fn finish(self) -> World {
+        let Self { scene, stage, objects, warnings, shape_warnings, ground, .. } = self;
+        let mut world = World { stage, objects, warnings, shape_warnings, ground };
+        world.warnings.extend(world.shape_warnings.iter().cloned());
+        world.warnings.extend(world.lights_on_surfaces(scene));
         world.warnings.extend(world.before_image_plane(scene.render.spp));
-        Ok(world)
+        world
     }
 
     /// Is there real optics, and is this material the surface of what light goes through? Thin panes have no inside.

@@ -12,6 +12,7 @@ use crate::scene::{
     Integrator, LARGEST_NUMBER, Mesh, OpenMesh, Problem, Remedy, Step, Warning, WarningCode, whole_map,
 };
 use crate::stage::{FLAT, NO_PRIMITIVE, NO_SOLID, Solid, Surfaces};
+use std::sync::Arc;
 
 /// Triangles on their way into a tree, each with its largest angle first ([`area`](crate::geometry::area)).
 #[derive(Default)]
@@ -130,11 +131,11 @@ impl Builder<'_> {
         let corner_normals = (mesh.smooth_angle > 0.0).then(|| placed.smooth_normals(mesh.smooth_angle, weights));
         let is_model = !mesh.instances.is_empty();
         let (surfaces, triangles) = if is_model {
-            self.stage.models.push(Surfaces::default());
+            self.models.push(Surfaces::default());
             self.parts.models.push(Triangles::default());
-            (self.stage.models.last_mut(), self.parts.models.last_mut())
+            (self.models.last_mut(), self.parts.models.last_mut())
         } else {
-            (Some(&mut self.stage.surfaces), Some(&mut self.parts.triangles))
+            (Some(&mut self.surfaces), Some(&mut self.parts.triangles))
         };
         let (Some(surfaces), Some(triangles)) = (surfaces, triangles) else { return Ok(()) };
         // Solids of a model are numbered from 0, and get their own in each place.
@@ -173,13 +174,13 @@ impl Builder<'_> {
         let solids = if let Sides::Solids(solids) = sides { solids.solids } else { Vec::new() };
         if is_model {
             self.parts.solids.push(solids);
-            let model = self.stage.models.len() - 1;
+            let model = self.models.len() - 1;
             let maps = mesh.instances.iter().map(|steps| whole_map(steps));
             self.parts.placed.extend(maps.map(|map| (which, name.clone(), model, map)));
         } else {
             self.stage.solids.extend(solids);
-            let count = self.stage.surfaces.material_of.len() as u32 - first;
-            self.objects.push(Object { name: name.clone(), first, count });
+            let count = self.surfaces.material_of.len() as u32 - first;
+            Arc::make_mut(&mut self.objects).push(Object { name: name.clone(), first, count });
         }
         self.warn_about(&name, &place(main_key), &placed, mesh, without_area, &used);
         Ok(())
@@ -218,7 +219,7 @@ impl Builder<'_> {
         material_of: &impl Fn(usize, &TriangleMesh) -> u32,
     ) -> Result<(TriangleMesh, Sides), Problem> {
         let materials = (0..placed.faces.len()).map(|f| material_of(f, &placed));
-        let mut media = materials.filter(|&m| self.refracts(m)).map(|m| self.medium_of(m));
+        let mut media = materials.filter(|&m| self.refracts(m)).map(|m| self.stage.materials[m as usize].medium());
         let Some(medium) = media.next() else {
             if mesh.inside.is_some() && self.stage.has_media {
                 return Err(nothing_goes_through(name));
@@ -249,7 +250,11 @@ impl Builder<'_> {
             }
             Some(OpenMesh::Opaque) => {
                 let message = format!("{message}; it is opaque, as `open` says");
-                self.warnings.push(Warning { code: WarningCode::MeshNotRefracted, place: place.to_vec(), message });
+                self.shape_warnings.push(Warning {
+                    code: WarningCode::MeshNotRefracted,
+                    place: place.to_vec(),
+                    message,
+                });
                 Ok((placed, Sides::None))
             }
             Some(OpenMesh::Fill) => {
@@ -294,7 +299,7 @@ impl Builder<'_> {
         let known = self.stage.solids.iter().position(|solid| solid.between_faces_of == Some(material));
         let number = known.unwrap_or(self.stage.solids.len());
         if known.is_none() {
-            let medium = self.medium_of(material);
+            let medium = self.stage.materials[material as usize].medium();
             let bounds = Bounds::EMPTY;
             self.stage.solids.push(Solid {
                 medium,
@@ -319,7 +324,7 @@ impl Builder<'_> {
         without_area: usize,
         used: &[bool],
     ) {
-        let mut warn = |code, message| self.warnings.push(Warning { code, place: place.to_vec(), message });
+        let mut warn = |code, message| self.shape_warnings.push(Warning { code, place: place.to_vec(), message });
         if without_area > 0 {
             let message = format!("`{name}`: {without_area} faces without area are left out");
             warn(WarningCode::DegenerateFaces, message);
@@ -345,7 +350,7 @@ impl Builder<'_> {
                 "`{name}` has a transparent material, but this integrator refracts only in spheres: \
                  its transparent share is not drawn"
             );
-            self.warnings.push(Warning { code: WarningCode::MeshNotRefracted, place, message });
+            self.shape_warnings.push(Warning { code: WarningCode::MeshNotRefracted, place, message });
         }
     }
 }

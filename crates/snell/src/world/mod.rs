@@ -1,6 +1,7 @@
 //! The compiled scene: what the kernels read ([`Stage`]), and the names and warnings that go with it. Immutable.
 
 mod builder;
+mod edit;
 mod lamp;
 mod light;
 mod material;
@@ -20,6 +21,8 @@ use crate::scene::{Integrator, Problems, Scene, Warning};
 use crate::stage::Surfaces;
 use builder::Builder;
 use std::ops::Deref;
+use std::sync::Arc;
+use tree::Ground;
 
 /// An object of the scene: the primitives `first .. first + count`.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,9 +41,12 @@ pub struct World {
     /// What the kernels read.
     pub stage: Stage,
     /// Objects in the order of their primitives.
-    pub objects: Vec<Object>,
+    pub objects: Arc<Vec<Object>>,
     /// What is probably not meant.
     pub warnings: Vec<Warning>,
+    /// Those of them that the shapes give rise to.
+    shape_warnings: Vec<Warning>,
+    ground: Ground,
 }
 
 impl Deref for World {
@@ -77,7 +83,7 @@ impl World {
     /// The same world without a tree: every ray is tested against every primitive. Slow, and the oracle of the tests.
     #[must_use]
     pub fn brute_force(mut self) -> Self {
-        self.stage.tree = self.stage.tree.flat();
+        self.stage.tree = Arc::new(self.stage.tree.as_ref().clone().flat());
         self
     }
 
@@ -106,7 +112,7 @@ impl World {
     /// Bytes of geometry and tree.
     pub fn memory(&self) -> usize {
         let tree = self.tree.statistics();
-        let surfaces: usize = self.models.iter().chain([&self.surfaces]).map(Surfaces::memory).sum();
+        let surfaces: usize = self.models.iter().chain([self.surfaces.as_ref()]).map(Surfaces::memory).sum();
         size_of_val(self.spheres.as_slice()) + surfaces + tree.node_bytes + tree.primitive_bytes
     }
 }

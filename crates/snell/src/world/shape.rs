@@ -8,6 +8,7 @@ use crate::geometry::shape::{Cuboid, Disc, Rectangle, Surface};
 use crate::geometry::{Affine, TriangleMesh};
 use crate::scene::{LARGEST_NUMBER, Problem, Step, Transform, Warning, WarningCode, whole_map};
 use crate::stage::{NO_SOLID, Solid};
+use std::sync::Arc;
 
 /// What is said of a shape besides where it is.
 struct About<'a> {
@@ -144,18 +145,18 @@ impl Builder<'_> {
             if !has_size && (S::is_solid() || key == "instances") {
                 return Err(problem(format!("`{name}` is scaled by 0 here")));
             }
-            let first = self.stage.surfaces.material_of.len() as u32;
-            self.objects.push(Object { name: name.clone(), first, count: u32::from(has_size) });
+            let first = self.surfaces.material_of.len() as u32;
+            Arc::make_mut(&mut self.objects).push(Object { name: name.clone(), first, count: u32::from(has_size) });
             if !has_size {
                 let message = format!("`{name}` has no area, and is left out");
-                self.warnings.push(Warning { code: WarningCode::DegenerateFaces, place: place(key), message });
+                self.shape_warnings.push(Warning { code: WarningCode::DegenerateFaces, place: place(key), message });
                 continue;
             }
             let refused = |problem| Problem { place: place("material"), ..problem };
             let [behind, front] = self.sides_of_shape(&name, about, &placed, material).map_err(refused)?;
-            self.stage.surfaces.material_of.push(material);
-            put_sparse(&mut self.stage.surfaces.interior_of, first as usize, behind, NO_SOLID);
-            put_sparse(&mut self.stage.surfaces.exterior_of, first as usize, front, NO_SOLID);
+            self.surfaces.material_of.push(material);
+            put_sparse(&mut self.surfaces.interior_of, first as usize, behind, NO_SOLID);
+            put_sparse(&mut self.surfaces.exterior_of, first as usize, front, NO_SOLID);
             S::list(&mut self.parts).push(placed);
         }
         if self.stage.materials[material as usize].is_transparent() {
@@ -182,7 +183,7 @@ impl Builder<'_> {
             let bounds = shape.bounds();
             return Ok([self.side(about.inside, bounds), self.side(about.outside, bounds)]);
         }
-        let medium = self.medium_of(material);
+        let medium = self.stage.materials[material as usize].medium();
         if !S::is_solid() {
             let mut mesh = TriangleMesh::default();
             shape.tessellate(&mut |corners| {
@@ -206,7 +207,7 @@ impl Builder<'_> {
             inward: false,
             touches: false,
             between_faces_of: None,
-            primitive: self.stage.surfaces.material_of.len() as u32,
+            primitive: self.surfaces.material_of.len() as u32,
             bounds: shape.bounds(),
         });
         Ok([number, NO_SOLID])

@@ -1,10 +1,11 @@
 //! Which solids a scene has, and which of them may touch something.
 
 use super::builder::Builder;
+use super::tree::ROOM;
 use crate::geometry::bvh::{Instance, Shapes};
 use crate::geometry::solid::{Component, EdgePlace, Found, Orientation, Report, Verdict, structure};
 use crate::geometry::{Affine, Bounds, TriangleMesh, Vec3};
-use crate::stage::{Medium, NO_PRIMITIVE, NO_SOLID, NONE, Solid};
+use crate::stage::{Medium, NO_PRIMITIVE, NO_SOLID, Solid};
 
 /// More solids than this, among as many objects, are not compared with each other: all count as touching.
 const COMPARED: usize = 2000;
@@ -106,13 +107,6 @@ pub(super) fn placed(solid: &Solid, map: &Affine) -> Solid {
 }
 
 impl Builder<'_> {
-    /// The medium of a material.
-    pub(super) fn medium_of(&self, material: u32) -> Medium {
-        let m = &self.stage.materials[material as usize];
-        let spectrum = (m.spectrum != NONE).then_some(m.spectrum);
-        Medium { eta: m.eta, spectrum, sigma_a: m.sigma_a, priority: m.priority }
-    }
-
     /// Which solids may touch something: those whose box meets that of another solid or object.
     pub(super) fn touching(&self, shapes: &Shapes<'_>, instances: &[Instance]) -> Vec<bool> {
         if self.stage.solids.is_empty() {
@@ -120,7 +114,7 @@ impl Builder<'_> {
         }
         // The boxes of the solids first, then those of everything that is none.
         let mut boxes: Vec<Bounds> = self.stage.solids.iter().map(|solid| solid.bounds).collect();
-        for object in &self.objects {
+        for object in self.objects.iter() {
             let mut opaque = (object.first as usize..(object.first + object.count) as usize)
                 .filter(|&id| self.stage.interior_of(id) == NO_SOLID);
             if object.first as usize >= shapes.count() {
@@ -130,11 +124,9 @@ impl Builder<'_> {
                 boxes.extend(opaque.map(|id| shapes.bounds(id)).reduce(Bounds::union));
             }
         }
-        let room = Vec3::new(
-            self.stage.coincidence_tolerance,
-            self.stage.coincidence_tolerance,
-            self.stage.coincidence_tolerance,
-        );
+        // As large as the tolerance may become while the tree stays.
+        let tolerance = ROOM * self.stage.coincidence_tolerance;
+        let room = Vec3::new(tolerance, tolerance, tolerance);
         let too_many = self.stage.solids.len().saturating_mul(boxes.len()) > COMPARED * COMPARED;
         let touches = |number: usize| {
             let grown = Bounds { min: boxes[number].min - room, max: boxes[number].max + room };

@@ -6,6 +6,7 @@ use crate::geometry::shape::Surface;
 use crate::geometry::{Affine, Sphere, Vec3};
 use crate::scene::{self, LARGEST_NUMBER, Problem, Step, Warning, WarningCode, whole_map};
 use crate::stage::{NO_SOLID, Solid};
+use std::sync::Arc;
 
 impl Builder<'_> {
     /// Adds a sphere in all of its places.
@@ -35,7 +36,7 @@ impl Builder<'_> {
             }
             if radius == 0.0 && sphere.radius > 0.0 {
                 let message = "this scales the sphere to radius 0: it is invisible".to_owned();
-                self.warnings.push(Warning { code: WarningCode::InvisibleSphere, place, message });
+                self.shape_warnings.push(Warning { code: WarningCode::InvisibleSphere, place, message });
             }
             self.place_sphere(index, sphere, Sphere { center, radius });
             if map != Affine::IDENTITY || !self.stage.sphere_turns.is_empty() {
@@ -50,14 +51,14 @@ impl Builder<'_> {
     fn place_sphere(&mut self, index: usize, sphere: &scene::Sphere, placed: Sphere) {
         let name = sphere.name.clone().unwrap_or_else(|| format!("sphere {}", index + 1));
         let id = self.stage.spheres.len();
-        self.objects.push(Object { name, first: id as u32, count: 1 });
+        Arc::make_mut(&mut self.objects).push(Object { name, first: id as u32, count: 1 });
         self.stage.spheres.push(placed);
         let material = self.material_ids.get(sphere.material.as_str()).copied().unwrap_or(0);
-        self.stage.surfaces.material_of.push(material);
+        self.surfaces.material_of.push(material);
         if self.refracts(material) {
-            self.stage.surfaces.interior_of.resize(id, NO_SOLID);
-            self.stage.surfaces.interior_of.push(self.stage.solids.len() as u32);
-            let (medium, bounds) = (self.medium_of(material), placed.bounds());
+            self.surfaces.interior_of.resize(id, NO_SOLID);
+            self.surfaces.interior_of.push(self.stage.solids.len() as u32);
+            let (medium, bounds) = (self.stage.materials[material as usize].medium(), placed.bounds());
             self.stage.solids.push(Solid {
                 medium,
                 inward: false,

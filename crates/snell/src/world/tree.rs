@@ -7,7 +7,28 @@ use super::solid::placed;
 use crate::geometry::Bounds;
 use crate::geometry::bvh::{self, Instance, MARGIN, Quality, Shapes};
 use crate::scene::{LARGEST_NUMBER, Problem, Step};
-use crate::stage::{NO_PRIMITIVE, Placement};
+use crate::stage::{CameraFrame, NO_PRIMITIVE, Placement};
+use std::sync::Arc;
+
+/// The boxes of the tree are that much larger than they must be, so that they may stay when rays start farther away: less than what
+/// rounding them to `f32` adds to them.
+pub(super) const ROOM: f64 = 16.0;
+
+/// What the tree was built for.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ground {
+    /// All shapes, without the places where camera rays start.
+    pub extent: Bounds,
+    /// The largest tolerance for which the boxes of the tree are large enough.
+    pub margin: f64,
+}
+
+/// The diagonal of everything, and what a hit may be off the plane of its face, but for instances. Rays start at the camera or on
+/// surfaces: no ray origin is farther from a primitive than the diagonal.
+pub(super) fn measure(extent: Bounds, camera: &CameraFrame) -> (f64, f64) {
+    let everything = extent.union(camera.starts());
+    (everything.diagonal(), MARGIN * (everything.diagonal() + everything.farthest()))
+}
 
 impl Builder<'_> {
     pub(super) fn build_tree(&mut self, quality: Quality, threads: usize) -> Result<(), Problem> {
@@ -27,9 +48,7 @@ impl Builder<'_> {
             let message = "more than 2 billion shapes and triangles".to_owned();
             return Err(Problem { place: vec![Step::from("mesh")], message, help: None, remedy: None });
         }
-        // Rays start at the camera or on surfaces; no ray origin is farther from a primitive than this.
-        let starts = self.stage.camera.starts();
-        let mut everything = (0..shapes.count()).map(|i| shapes.bounds(i)).fold(starts, Bounds::union);
+        let mut extent = (0..shapes.count()).map(|i| shapes.bounds(i)).fold(Bounds::EMPTY, Bounds::union);
         let mut boxes = Vec::with_capacity(self.parts.placed.len());
         for (which, name, model, map) in &self.parts.placed {
             let Triangles { vertices, faces } = &self.parts.models[*model];
@@ -39,12 +58,12 @@ impl Builder<'_> {
             if !(bounds.farthest() <= LARGEST_NUMBER || faces.is_empty()) {
                 return Err(problem(*which, format!("an instance of `{name}` reaches beyond 1e15")));
             }
-            everything = everything.union(bounds);
+            extent = extent.union(bounds);
             boxes.push(bounds);
         }
+        (self.stage.reach, self.stage.coincidence_tolerance) = measure(extent, &self.stage.camera);
+        let everything = extent.union(self.stage.camera.starts());
         let (reach, farthest) = (everything.diagonal(), everything.farthest());
-        self.stage.reach = reach;
-        self.stage.coincidence_tolerance = MARGIN * (reach + farthest);
         // In the space of a model rays come from everywhere that any of its instances sees, and start a little behind.
         let mut seen: Vec<Bounds> = self.parts.models.iter().map(|m| Bounds::of(m.vertices.iter().copied())).collect();
         let mut norms = vec![0.0; self.parts.models.len()];
@@ -58,7 +77,11 @@ impl Builder<'_> {
             norms[*model] = instance.to_model.norm().max(norms[*model]);
             seen[*model] = seen[*model].union(Bounds::of(everything.corners().map(|c| instance.to_model.apply(c))));
             let count = self.stage.models[*model].material_of.len();
-            self.objects.push(Object { name: name.clone(), first: first as u32, count: count as u32 });
+            Arc::make_mut(&mut self.objects).push(Object {
+                name: name.clone(),
+                first: first as u32,
+                count: count as u32,
+            });
             let placement = Placement {
                 model: *model,
                 first: first as u32,
@@ -86,7 +109,8 @@ impl Builder<'_> {
         let models = models.collect();
         let touching = self.touching(&shapes, &instances);
         let shapes = Shapes { instances: &instances, ..shapes };
-        self.stage.tree = bvh::build(&shapes, models, self.stage.coincidence_tolerance, quality, threads);
+        self.ground = Ground { extent, margin: ROOM * self.stage.coincidence_tolerance };
+        self.stage.tree = Arc::new(bvh::build(&shapes, models, self.ground.margin, quality, threads));
         for (solid, touches) in self.stage.solids.iter_mut().zip(touching) {
             solid.touches = touches;
         }
