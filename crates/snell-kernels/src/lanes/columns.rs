@@ -5,6 +5,7 @@
 use super::{Lanes, MAX_WIDTH, Mask};
 use alloc::vec;
 use alloc::vec::Vec;
+use core::ops::Range;
 
 /// A cache line: columns begin at one.
 #[derive(Clone, Copy, Debug, Default, bytemuck::Pod, bytemuck::Zeroable)]
@@ -117,7 +118,7 @@ impl<const N: usize> Columns<N> {
     fn grow(&mut self, needed: usize) {
         let room = needed.next_power_of_two().max(2 * MAX_WIDTH) + MAX_WIDTH;
         let mut larger = Self { lines: vec![Line::default(); N * (room / MAX_WIDTH)], room, len: 0 };
-        larger.append(self);
+        larger.copy_rows(self, 0..self.len);
         *self = larger;
     }
 
@@ -152,30 +153,22 @@ impl<const N: usize> Columns<N> {
         self.len += count;
     }
 
-    /// Appends all rows of another table.
+    /// Appends neighbouring rows of another table.
     #[inline(always)]
-    pub fn append(&mut self, other: &Self) {
-        self.reserve(other.len);
+    pub fn copy_rows(&mut self, other: &Self, rows: Range<usize>) {
+        assert!(rows.end <= other.len, "no row {}", rows.end);
+        let count = rows.len();
+        self.reserve(count);
         let (start, room) = (self.len, self.room);
         let (values, others) = (self.values_mut(), other.values());
         for column in 0..N {
-            let (to, from) = (&mut values[column * room + start..], &others[column * other.room..]);
+            let (to, from) = (&mut values[column * room + start..], &others[column * other.room + rows.start..]);
             // In whole lines, which is no call; there is room for one behind the last row of both.
-            for row in (0..other.len).step_by(MAX_WIDTH) {
+            for row in (0..count).step_by(MAX_WIDTH) {
                 to[row..row + MAX_WIDTH].copy_from_slice(&from[row..row + MAX_WIDTH]);
             }
         }
-        self.len += other.len;
-    }
-
-    /// Appends one row of another table.
-    pub fn copy_row(&mut self, other: &Self, row: usize) {
-        self.reserve(1);
-        let (start, room) = (self.len, self.room);
-        for column in 0..N {
-            self.values_mut()[column * room + start] = other.at(column, row);
-        }
-        self.len += 1;
+        self.len += count;
     }
 
     /// Makes it this many rows, with any numbers in them.
@@ -218,9 +211,11 @@ mod tests {
         let last: [Four; 2] = table.group(0, 118);
         assert_eq!([last[0].lane(0), last[0].lane(1), last[1].lane(1)], [157.0, 159.0, -159.0]);
         let mut other = Columns::<2>::default();
-        other.copy_row(&table, 2);
-        other.append(&table);
-        other.append(&table);
+        other.copy_rows(&table, 2..3);
+        other.copy_rows(&table, 0..120);
+        other.copy_rows(&table, 0..50);
+        other.copy_rows(&table, 50..50);
+        other.copy_rows(&table, 50..120);
         assert_eq!(other.len(), 241);
         for row in 0..241 {
             let from = if row == 0 { 2 } else { (row - 1) % 120 };

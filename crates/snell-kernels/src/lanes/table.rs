@@ -2,6 +2,7 @@
 
 use super::Lanes;
 use core::fmt::Debug;
+use core::ops::Range;
 
 /// Rows of the same kind, in columns. `()` is the table without any.
 ///
@@ -13,10 +14,8 @@ pub trait Table: Record + Clone + Debug + Default {
     fn push<L: Lanes>(&mut self, mask: L::Mask, row: &Self::Row<L>);
     /// The rows from one on, one in each lane; lanes behind the last row are of no meaning.
     fn rows<L: Lanes>(&self, start: usize) -> Self::Row<L>;
-    /// Appends all rows of another table.
-    fn append(&mut self, other: &Self);
-    /// Appends one row of another table.
-    fn copy_row(&mut self, other: &Self, row: usize);
+    /// Appends neighbouring rows of another table.
+    fn copy_rows(&mut self, other: &Self, rows: Range<usize>);
 }
 
 /// A row of a record, in lanes.
@@ -30,9 +29,7 @@ impl Table for () {
     #[inline(always)]
     fn rows<L: Lanes>(&self, _start: usize) {}
     #[inline(always)]
-    fn append(&mut self, _other: &Self) {}
-    #[inline(always)]
-    fn copy_row(&mut self, _other: &Self, _row: usize) {}
+    fn copy_rows(&mut self, _other: &Self, _rows: Range<usize>) {}
 }
 
 /// What a field of a row may be: some neighbouring columns.
@@ -147,12 +144,8 @@ macro_rules! table {
                 <$table as $crate::lanes::table::Record>::from_columns(&columns)
             }
             #[inline(always)]
-            fn append(&mut self, other: &Self) {
-                self.0.append(&other.0);
-            }
-            #[inline(always)]
-            fn copy_row(&mut self, other: &Self, row: usize) {
-                self.0.copy_row(&other.0, row);
+            fn copy_rows(&mut self, other: &Self, rows: std::ops::Range<usize>) {
+                self.0.copy_rows(&other.0, rows);
             }
         }
     };
@@ -247,8 +240,8 @@ mod tests {
         }
         things.replace(3, &Thing { number: 7.0, place: Vec3::new(8.0, 9.0, 10.0), other: 11.0 });
         let mut some = Things::default();
-        some.copy_row(&things, 3);
-        some.append(&things);
+        some.copy_rows(&things, 3..4);
+        some.copy_rows(&things, 0..things.len());
         assert_eq!((some.len(), some.place::<f64>(0), some.other::<f64>(4)), (28, Vec3::new(8.0, 9.0, 10.0), 11.0));
     }
 }

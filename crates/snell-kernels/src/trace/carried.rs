@@ -1,6 +1,7 @@
 //! What rays carry. Only their model of light knows what that is: here it is a few columns.
 
 use crate::lanes::{Columns, Lanes, Record, Row};
+use std::ops::Range;
 
 /// No model carries more numbers than this.
 const MOST: usize = 6;
@@ -87,16 +88,10 @@ impl Carried {
         T::from_columns(&columns[..T::COLUMNS])
     }
 
-    /// Appends all rows of others.
+    /// Appends neighbouring rows of others.
     #[inline(always)]
-    pub fn append(&mut self, other: &Self) {
+    pub fn copy_rows(&mut self, other: &Self, rows: Range<usize>) {
         self.used = self.used.max(other.used);
-        self.columns.append(&other.columns);
-    }
-
-    /// Appends one row of others.
-    pub fn copy_row(&mut self, other: &Self, row: usize) {
-        self.used = other.used;
-        self.columns.copy_row(&other.columns, row);
+        self.columns.copy_rows(&other.columns, rows);
     }
 }

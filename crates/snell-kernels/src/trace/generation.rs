@@ -230,8 +230,12 @@ impl<'a, L: Lanes, O: Observer, I: Integrator> Tracer<'a, L, O, I> {
         }
         let middle = low + (high - low) / 2;
         let mut halves = [self.empty_queue(), self.empty_queue()];
-        for row in 0..queue.len() {
-            halves[usize::from(queue.pixel(row) > middle)].copy_row(&queue, row);
+        let half = |row: usize| usize::from(queue.pixel(row) > middle);
+        let mut first = 0;
+        while first < queue.len() {
+            let end = (first..queue.len()).find(|&row| half(row) != half(first)).unwrap_or(queue.len());
+            halves[half(first)].copy_rows(&queue, first..end);
+            first = end;
         }
         self.spare.push(queue);
         let [first, second] = halves;
@@ -301,6 +305,8 @@ impl<'a, L: Lanes, O: Observer, I: Integrator> Tracer<'a, L, O, I> {
             return;
         }
         let mut kept = self.empty_queue();
+        // The first row that is not yet copied. Neighbours mostly share their fate, and mostly none ends at all.
+        let mut first = 0;
         let mut planned = if too_deep { Vec::new() } else { self.rays_of.clone() };
         for row in 0..children.len() {
             let pixel = children.pixel(row);
@@ -318,12 +324,16 @@ impl<'a, L: Lanes, O: Observer, I: Integrator> Tracer<'a, L, O, I> {
                 self.lost[pixel] = self.lost[pixel] + throughput;
                 self.traced.lost[pixel] = self.traced.lost[pixel].saturating_add(lost_units(throughput));
                 self.statistics.lost.rays += 1;
+                kept.copy_rows(children, first..row);
+                first = row + 1;
             } else {
                 planned[pixel] += 1;
-                kept.copy_row(children, row);
             }
         }
-        core::mem::swap(children, &mut kept);
+        if first > 0 {
+            kept.copy_rows(children, first..children.len());
+            core::mem::swap(children, &mut kept);
+        }
         self.spare.push(kept);
     }
 

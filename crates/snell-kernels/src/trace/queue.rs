@@ -6,6 +6,7 @@ use crate::geometry::bvh::{PACKET, Packet};
 use crate::geometry::{Sphere, Vec3};
 use crate::lanes::{Lanes, Mask, Number, Record, Row, Table, index, table};
 use alloc::vec::Vec;
+use core::ops::Range;
 
 /// Where a ray comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -133,31 +134,27 @@ impl<P: Propagation> RayQueue<P> {
         self.rays.push(mask, &rays.ray);
         self.travel.push(mask, &rays.travel);
         self.carried.push::<L, T>(mask, carried);
-        self.count(kind, self.len() - before);
+        if kind == RayKind::Mirror {
+            self.mirror += self.len() - before;
+        }
     }
 
+    /// Appends neighbouring rays of another queue, which must not be of an earlier kind.
     #[inline(always)]
-    fn count(&mut self, kind: RayKind, rays: usize) {
-        if kind == RayKind::Mirror {
-            self.mirror += rays;
+    pub fn copy_rows(&mut self, other: &Self, rows: Range<usize>) {
+        if rows.is_empty() {
+            return;
         }
+        self.rays.copy_rows(&other.rays, rows.clone());
+        self.travel.copy_rows(&other.travel, rows.clone());
+        self.carried.copy_rows(&other.carried, rows.clone());
+        self.mirror += rows.end.min(other.mirror) - rows.start.min(other.mirror);
     }
 
     /// Appends all rays of another queue, which must not be of an earlier kind.
     #[inline(always)]
     pub fn append(&mut self, other: &Self) {
-        self.rays.append(&other.rays);
-        self.travel.append(&other.travel);
-        self.carried.append(&other.carried);
-        self.mirror += other.mirror;
-    }
-
-    /// Appends one ray of another queue.
-    pub fn copy_row(&mut self, from: &Self, row: usize) {
-        self.rays.copy_row(&from.rays, row);
-        self.travel.copy_row(&from.travel, row);
-        self.carried.copy_row(&from.carried, row);
-        self.count(from.kind(row), 1);
+        self.copy_rows(other, 0..other.len());
     }
 
     /// The pixel of a ray, within the tile.

@@ -44,7 +44,8 @@ impl World {
         self.materials.len() == stage.materials.len()
             && self.materials.iter().zip(&stage.materials).all(same_kind)
             && first_like(&glasses(self)) == first_like(&glasses(stage))
-            && (same_starts || self.placements.is_empty() && measure(self.ground.extent, &stage.camera).1 <= self.ground.margin)
+            && (same_starts
+                || self.placements.is_empty() && measure(self.ground.extent, &stage.camera).1 <= self.ground.margin)
     }
 }
 

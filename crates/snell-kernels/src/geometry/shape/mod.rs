@@ -247,6 +247,15 @@ macro_rules! shapes {
         /// So many numbers describe a shape, by its kind.
         pub const NUMBERS: [usize; KINDS] = [$($Shape::NUMBERS),+];
 
+        /// No shape has more.
+        const MOST_NUMBERS: usize = {
+            let mut most = 0;
+            $(if $Shape::NUMBERS > most {
+                most = $Shape::NUMBERS;
+            })+
+            most
+        };
+
         /// What a tree is built over, numbered in this order: kind by kind, then the instances.
         #[derive(Clone, Copy, Debug, Default)]
         pub struct Shapes<'a> {
@@ -322,8 +331,12 @@ impl<L: Lanes> Query<L> {
 fn meet<S: Shape>(shape: &S, origin: Vec3, dir: Vec3) -> Option<f64> {
     let axes = if S::SHEARED { axes(main_axis(dir)) } else { [0, 1, 2] };
     let ray = Ray { origin: origin.permuted(axes), heading: Heading::new(dir.permuted(axes)), axes };
-    let mut numbers = Vec::with_capacity(S::NUMBERS);
-    shape.write(|number| numbers.push(number));
+    // Not in memory of its own: this is asked for every ray that has left a mirror.
+    let (mut numbers, mut written) = ([0.0; MOST_NUMBERS], 0);
+    shape.write(|number| {
+        numbers[written] = number;
+        written += 1;
+    });
     let (t, meets) = S::intersect(&ray, One { numbers: &numbers, stride: 1, place: 0 }, &Query::everywhere());
     meets.then_some(t)
 }
