@@ -21,7 +21,7 @@
 //! use snell_kernels::integrate::{WithIntegrator, with_integrator};
 //! use snell_kernels::lanes::{Kernel, Lanes, dispatch};
 //! use snell_kernels::settings::{Integrator, Settings, Shadows};
-//! use snell_kernels::stage::{CameraFrame, CompiledMaterial, Stage};
+//! use snell_kernels::stage::{CameraFrame, CompiledMaterial, Stage, Surfaces};
 //! use snell_kernels::trace::{self, Tile, Tracer};
 //!
 //! /// The first pixel.
@@ -50,10 +50,10 @@
 //! let sphere = Sphere { center: Vec3::new(0.0, 0.0, 0.0), radius: 1.0 };
 //! let shapes = Shapes { spheres: &[sphere], ..Shapes::default() };
 //! // A handful of spheres needs no nodes.
-//! let tree = Bvh::new(Vec::new(), Primitives::default(), 0, &shapes, Vec::new());
+//! let tree = Bvh::new(Vec::new(), Primitives::default(), 0, &shapes, Vec::new()).into();
 //! let orange = CompiledMaterial { ka: Rgb::new(1.0, 0.5, 0.0), ..CompiledMaterial::BLACK };
 //! let mut stage = Stage { spheres: vec![sphere], materials: vec![orange], tree, ambient: Rgb::gray(1.0), ..Stage::new(camera) };
-//! stage.surfaces.material_of = vec![0];
+//! stage.surfaces = Surfaces { material_of: vec![0], ..Surfaces::default() }.into();
 //! stage.objects = vec![0..1];
 //!
 //! let (integrator, shadows) = (Integrator::Lecture, Shadows::Off);

@@ -188,7 +188,7 @@ impl NativeScene {
                     read_files(&Source::new(OURS, text), &self.folder, &self.inline)?
                 }
             };
-            NativeWorld::compile(self.name.clone(), scene, read, self.folder.clone())
+            NativeWorld::compile(self.name.clone(), scene, read, self.folder.clone(), before)
         });
         made.map_err(|findings: Vec<Finding>| raise(py, "SceneError", findings))
     }

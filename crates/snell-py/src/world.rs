@@ -66,7 +66,7 @@ impl Ready {
     }
 
     fn compiled(&self) -> Result<&World, &Vec<Finding>> {
-        let compile = || compile(&self.scene).map_err(|problems| problems.iter().map(errors::problem).collect());
+        let compile = || World::build(&self.scene, Quality::default(), 0).map_err(findings);
         self.world.get_or_init(compile).as_ref()
     }
 
@@ -86,9 +86,10 @@ impl Ready {
     }
 }
 
-/// Compiles a scene: the only place where a world is made.
-fn compile(scene: &Scene) -> Result<World, Problems> {
-    World::build(scene, Quality::default(), 0)
+/// What Python is told of the problems of a scene.
+#[expect(clippy::needless_pass_by_value, reason = "for `map_err`")]
+fn findings(problems: Problems) -> Vec<Finding> {
+    problems.iter().map(errors::problem).collect()
 }
 
 /// A compiled scene.
@@ -101,9 +102,22 @@ pub struct NativeWorld {
 }
 
 impl NativeWorld {
-    pub fn compile(name: String, described: Scene, read: Read, folder: PathBuf) -> Result<Self, Vec<Finding>> {
+    /// `before`: a world whose geometry may be shared, where the scene has the same.
+    pub fn compile(
+        name: String,
+        described: Scene,
+        read: Read,
+        folder: PathBuf,
+        before: Option<&Self>,
+    ) -> Result<Self, Vec<Finding>> {
         let Read { scene, models, warnings: read_warnings } = read;
         let ready = Ready::later(name, described, scene, folder, models);
+        let before = before.and_then(|before| Some((&before.ready.scene, before.ready.world.get()?.as_ref().ok()?)));
+        if let Some((scene, world)) = before {
+            let edited = world.edited(scene, &ready.scene);
+            // Nobody else has it yet, so that nothing is there.
+            let _ = ready.world.set(edited.map_err(findings));
+        }
         let world = ready.compiled().map_err(Clone::clone)?;
         let text = |w: &Warning| format!("{w}{}", errors::advice(w.code));
         let of_world = world.warnings.iter().map(|w| (Some(errors::path(&w.place)), text(w), None));

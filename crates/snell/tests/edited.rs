@@ -35,7 +35,7 @@ const KEEPS: [(&str, Edit); 9] = [
     ("the sky", |scene| {
         scene.background = Rgb::gray(0.0);
         let [horizon, zenith] = [Rgb::new(0.2, 0.3, 0.4), Rgb::new(0.5, 0.1, 0.7)].map(Some);
-        scene.sky = Some(Sky { horizon, zenith, ..Sky::default() });
+        scene.sky = Some(Sky { horizon, zenith, nadir: None, image: None, rotate: 0.0, brightness: 1.0, pixels: None });
     }),
     ("colours", |scene| scene.materials.values_mut().for_each(|m| m.kd = Rgb::new(m.kd.b, 0.4, m.kd.r))),
     ("glasses", |scene| {

@@ -7,8 +7,9 @@ use crate::geometry::bvh::{Bvh, Shapes, primitives::Primitives};
 use crate::geometry::{Sphere, Vec3};
 use crate::lanes::{Instructions, Kernel, Lanes, Mask, dispatch, record};
 use crate::settings::{self, Settings, Shadows};
-use crate::stage::{CameraFrame, CompiledMaterial, Stage};
+use crate::stage::{CameraFrame, CompiledMaterial, Stage, Surfaces};
 use crate::trace::{Batch, Children, FirstSurface, Integrator, Most, RayKind, Tile, Tracer};
+use alloc::sync::Arc;
 use alloc::vec;
 use alloc::vec::Vec;
 
@@ -83,10 +84,10 @@ fn normals_as_colours() {
     let camera = CameraFrame { eye, axes: [x, y, z], bounds, size: [5, 1], near: -3.0, from_eye: false };
     let balls = [-2.0, 8.0].map(|z| Sphere { center: Vec3::new(0.0, 0.0, z), radius: 1.0 });
     let shapes = Shapes { spheres: &balls, ..Shapes::default() };
-    let tree = Bvh::new(Vec::new(), Primitives::default(), 0, &shapes, Vec::new());
+    let tree = Arc::new(Bvh::new(Vec::new(), Primitives::default(), 0, &shapes, Vec::new()));
     let mut stage =
         Stage { spheres: balls.to_vec(), materials: vec![CompiledMaterial::BLACK], tree, ..Stage::new(camera) };
-    stage.surfaces.material_of = vec![0; balls.len()];
+    stage.surfaces = Arc::new(Surfaces { material_of: vec![0; balls.len()], ..Surfaces::default() });
     let settings = Settings {
         integrator: settings::Integrator::Lecture,
         max_depth: 2,

@@ -155,7 +155,7 @@ impl<const N: usize> Columns<N> {
 
     /// Appends neighbouring rows of another table.
     #[inline(always)]
-    pub fn copy_rows(&mut self, other: &Self, rows: Range<usize>) {
+    pub(crate) fn copy_rows(&mut self, other: &Self, rows: Range<usize>) {
         assert!(rows.end <= other.len, "no row {}", rows.end);
         let count = rows.len();
         self.reserve(count);

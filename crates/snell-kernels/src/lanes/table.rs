@@ -144,7 +144,7 @@ macro_rules! table {
                 <$table as $crate::lanes::table::Record>::from_columns(&columns)
             }
             #[inline(always)]
-            fn copy_rows(&mut self, other: &Self, rows: std::ops::Range<usize>) {
+            fn copy_rows(&mut self, other: &Self, rows: core::ops::Range<usize>) {
                 self.0.copy_rows(&other.0, rows);
             }
         }

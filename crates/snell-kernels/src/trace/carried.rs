@@ -1,7 +1,7 @@
 //! What rays carry. Only their model of light knows what that is: here it is a few columns.
 
 use crate::lanes::{Columns, Lanes, Record, Row};
-use std::ops::Range;
+use core::ops::Range;
 
 /// No model carries more numbers than this.
 const MOST: usize = 6;

@@ -17,7 +17,6 @@ mod rectangle;
 pub mod sphere;
 pub mod triangle;
 
-use alloc::vec::Vec;
 pub use cuboid::Cuboid;
 pub use disc::Disc;
 pub use rectangle::Rectangle;
