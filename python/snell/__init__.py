@@ -25,6 +25,6 @@ from .tree import Figure, Hit, LightThere, Local, Node, RayTree, Sample
 __all__ = [
     "Box", "Camera", "Channels", "Difference", "Disc", "Figure", "Globe", "Hit", "Interactive", "Lathe", "Light",
     "LightThere", "Local", "Material", "Mesh", "Node", "OpticsError", "Picture", "PictureError", "Plane", "RayTree",
-    "Render", "RenderError", "Sample", "Scene", "SceneError", "Sightings", "Sky", "SnellError", "SnellWarning", "Sphere", "Sweep",
-    "Texture", "View", "__version__", "interact", "optics", "scenes", "sweep",
+    "Render", "RenderError", "Sample", "Scene", "SceneError", "Sightings", "Sky", "SnellError", "SnellWarning",
+    "Sphere", "Sweep", "Texture", "View", "__version__", "interact", "optics", "scenes", "sweep",
 ]  # fmt: skip

@@ -384,7 +384,35 @@ class Box(Value):
 
 @dataclass(eq=False, repr=False)
 class Disc(Value):
-    """A disc of this radius around `center`; a `transform` that stretches it makes it an ellipse."""
+    """A disc; a `transform` that stretches it makes it an ellipse.
+
+    Parameters
+    ----------
+    center : (3,)
+        Its middle, in scene units; by default the origin.
+    normal : (3,)
+        Where its front looks, of any length but 0; by default up, (0, 1, 0).
+    radius : float
+        In scene units, above 0; there is no default.
+    material : int or str
+        As for `Sphere`; there is no default.
+    name : str, optional
+        For messages and explanations, and for the keys of `Scene.with_`.
+    inside : int or str, optional
+        `whitted`: the material of what is behind the faces, which then are interfaces and need not be closed.
+    outside : int or str, optional
+        `whitted`: with `inside`, the material of what the faces look at; left out: the space between the objects.
+    transform : sequence of steps
+        What puts it in its place, one after the other: ``{"move": (x, y, z)}``, ``{"scale": (x, y, z)}``, ``{"rotate":
+        {"axis": (x, y, z), "degrees": angle}}``, right-handed about an axis through the origin; by default none.
+    instances : sequence of sequences of steps
+        The places where it stands, each a list of steps after those of `transform`; by default it stands there once.
+
+    Examples
+    --------
+    >>> Disc(radius=2, material="mirror")
+    Disc(radius=2, material='mirror')
+    """
 
     center: Vector = (0.0, 0.0, 0.0)
     normal: Vector = (0.0, 1.0, 0.0)
