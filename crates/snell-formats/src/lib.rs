@@ -6,6 +6,30 @@
 //! | [`picture`]: PNG, PPM, EXR, NPY, to compare or to read the recipe; as [`texture`]s | [`picture`]: the same |
 //! | [`recipe`]: how a picture was made | the same |
 //!
+//! ```text
+//!  a file, or a built-in scene ──▶ Source ── load ──▶ Scene ── snell ──▶ Film ── picture::write ──▶ a file with its recipe
+//!                                              │                                                        │
+//!                                              └─▶ Report, where anything is wrong          a picture ──┘ read again: load, diff
+//! ```
+//!
+//! ```
+//! use snell::render::{Options, Settings, render};
+//! use snell::world::World;
+//! use snell_formats::picture::{self, Format};
+//! use snell_formats::scene_file::{self, Syntax};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let source = snell_formats::builtin::find("lecture/default")?;
+//! let mut scene = scene_file::parse(&source, Syntax::Toml)?;
+//! scene.render.size = [40, 30];
+//! let film = render(&World::new(&scene)?, &Settings::from(&scene), &Options::default())?.film;
+//! let mut bytes = std::io::Cursor::new(Vec::new());
+//! picture::write_to(&mut bytes, Format::Png, &film, scene.render.encoding(), None)?;
+//! assert!(bytes.into_inner().starts_with(b"\x89PNG"));
+//! # Ok(())
+//! # }
+//! ```
+//!
 //! Whatever is wrong with a file becomes a [`Report`] with the place, what was read, what was expected and what to do.
 
 pub mod builtin;

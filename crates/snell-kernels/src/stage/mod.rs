@@ -70,8 +70,8 @@ pub struct Stage {
     pub reach: f64,
     /// How far a computed hit may be off the plane of its face, in scene units (`docs/tolerances.md`).
     pub coincidence_tolerance: f64,
-    /// How far behind its start a ray may still meet something: half of what the boxes of the tree are larger than what is in
-    /// them, so that no way down the tree can hide it.
+    /// How far behind its start a ray may still meet something: half of the tolerance, so that boxes, which are larger than what is in
+    /// them by the tolerance at least, do not hide it.
     pub exit_tolerance: f64,
     /// Is no triangle smooth?
     pub all_flat: bool,

@@ -80,25 +80,42 @@ impl Builder<'_> {
     }
 }
 
-/// Do the shapes stand in the same places, of materials of the same names?
+/// Do the shapes stand in the same places, of materials of the same names? A list that is new in scenes must be named here, or this does
+/// not compile.
 fn same_shapes(before: &Scene, after: &Scene) -> bool {
-    let same_mesh = |a: &Mesh, b: &Mesh| {
-        // Large ones are mostly the very same.
-        let shared = matches!((&a.geometry, &b.geometry), (Some(a), Some(b)) if Arc::ptr_eq(a, b));
-        if shared {
-            let without = |mesh: &Mesh| Mesh { geometry: None, ..mesh.clone() };
-            without(a) == without(b)
-        } else {
-            a == b
-        }
-    };
-    before.render.integrator == after.render.integrator
-        && before.materials.keys().eq(after.materials.keys())
-        && before.spheres == after.spheres
-        && before.meshes.len() == after.meshes.len()
-        && before.meshes.iter().zip(&after.meshes).all(|(a, b)| same_mesh(a, b))
-        && before.lathes == after.lathes
-        && before.planes == after.planes
-        && before.boxes == after.boxes
-        && before.discs == after.discs
+    let Scene {
+        snell: _,
+        schema: _,
+        ambient: _,
+        background: _,
+        sky: _,
+        eta_outside: _,
+        render,
+        camera: _,
+        lights: _,
+        materials,
+        textures: _,
+        spheres,
+        meshes,
+        planes,
+        boxes,
+        discs,
+        lathes,
+    } = before;
+    render.integrator == after.render.integrator
+        && materials.keys().eq(after.materials.keys())
+        && *spheres == after.spheres
+        && meshes.len() == after.meshes.len()
+        && meshes.iter().zip(&after.meshes).all(|(a, b)| same_mesh(a, b))
+        && *planes == after.planes
+        && *boxes == after.boxes
+        && *discs == after.discs
+        && *lathes == after.lathes
+}
+
+/// Large meshes are mostly the very same, and need not be compared.
+fn same_mesh(a: &Mesh, b: &Mesh) -> bool {
+    let shared = matches!((&a.geometry, &b.geometry), (Some(a), Some(b)) if Arc::ptr_eq(a, b));
+    let without = |mesh: &Mesh| Mesh { geometry: None, ..mesh.clone() };
+    if shared { without(a) == without(b) } else { a == b }
 }
