@@ -24,8 +24,8 @@
 //! scene.render.size = [40, 30];
 //! let film = render(&World::new(&scene)?, &Settings::from(&scene), &Options::default())?.film;
 //! let mut bytes = std::io::Cursor::new(Vec::new());
-//! picture::write_to(&mut bytes, Format::Png, &film, scene.render.encoding(), None)?;
-//! assert!(bytes.into_inner().starts_with(b"\x89PNG"));
+//! picture::write_to(&mut bytes, Format::Npy, &film, scene.render.encoding(), None)?;
+//! assert!(bytes.into_inner().starts_with(b"\x93NUMPY"));
 //! # Ok(())
 //! # }
 //! ```
