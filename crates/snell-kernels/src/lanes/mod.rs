@@ -12,7 +12,7 @@
 //! | 4 | AVX2 | an array |
 //! | 8 | AVX-512 | an array |
 //!
-//! [`LaneWidth`] chooses at run time. Kernels are `#[inline(always)]` down to the last call, so that they are compiled into
+//! [`dispatch`] chooses at run time. Kernels are `#[inline(always)]` down to the last call, so that they are compiled into
 //! [`Lanes::call`], the one function with the instructions of its width.
 
 /// Operators of vector types, an intrinsic each. For modules that say why their intrinsics may be called.

@@ -6,7 +6,7 @@
 //! an opaque surface among them is what is seen. Where both media are the same, or have the same index and the face shows
 //! nothing itself, there is no interface, and the ray goes on as if nothing had been there.
 //!
-//! At the start of a ray ways out count from a little behind it, ways in and opaque surfaces as [`Leaving`] says. A ray that starts
+//! At the start of a ray ways out count from a little behind it, ways in and opaque surfaces as `Leaving` says. A ray that starts
 //! within a solid at an edge may have been rounded to its outside, from where no face leads out: it leaves by the nearest one.
 
 use super::hits::{Batch, Hits, SKY};
@@ -35,7 +35,7 @@ table! {
         medium: Number,
         /// Its band of light; [`WHITE`] for all of it.
         band: Number,
-        /// From where it starts to the place from which it is asked what it meets ([`back`], [`through`]); zero where that is the same.
+        /// From where it starts to the place from which it is asked what it meets (`back`, `through`); zero where that is the same.
         back: Vec3,
     }
 }

@@ -12,7 +12,7 @@ use crate::stage::{Side, Stage};
 use core::fmt::Debug;
 
 /// How rays go from surface to surface. Models of light share it: [`FirstSurface`](super::FirstSurface) for those of the lecture and
-/// the course, [`Interfaces`](super::Interfaces) for real optics.
+/// the course, [`Interfaces`](super::interfaces::Interfaces) for real optics.
 pub trait Propagation: Debug + Sized + Sync + 'static {
     /// What rays have for it, besides a line and the primitive that they leave.
     type Travel: Table;
@@ -24,7 +24,7 @@ pub trait Propagation: Debug + Sized + Sync + 'static {
     /// No hit nearer than this counts, in scene units.
     const T_MIN: f64;
     /// Are surfaces met from both sides? Then it is known of each hit on which side it is, a ray may meet the place that it has just
-    /// left, which has to be looked at ([`Leaving`]), and the sky is a hit like others.
+    /// left, which has to be looked at (`Leaving`), and the sky is a hit like others.
     const TWO_SIDED: bool;
 
     /// What a worker remembers, at first.

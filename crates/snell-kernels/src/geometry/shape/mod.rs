@@ -38,7 +38,7 @@ pub trait Shape: Surface + Copy + Debug + 'static {
     /// So many numbers describe it in a leaf.
     const NUMBERS: usize;
 
-    /// Does its test take vectors in the order of a ray's axes, with the shears ([`Heading`](super::ray::Heading))?
+    /// Does its test take vectors in the order of a ray's axes, with the shears ([`Heading`])?
     const SHEARED: bool;
 
     /// Is it what most scenes are made of, so that its test stands wherever leaves are tested? Leaves of others, and of several kinds,
