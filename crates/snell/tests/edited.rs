@@ -6,8 +6,8 @@ mod common;
 
 use common::{ball, furnace, glass, mesh};
 use snell::film::Rgb;
-use snell::render::{Options, Settings, render};
-use snell::scene::{Light, Material, Scene, Sky, Transform};
+use snell::render::{Options, Settings, render, trace_pixel};
+use snell::scene::{Camera, Light, Material, Scene, Sky, Transform};
 use snell::world::World;
 use snell_test_scenes::glass::cuboid;
 use std::sync::Arc;
@@ -116,6 +116,41 @@ fn an_edited_world_is_the_new_one() {
         }
     }
     assert!(kept > 200 && rebuilt > 20, "{kept} kept, {rebuilt} built anew");
+}
+
+/// Plates of glass that are nearly in one place, seen at their edges and corners from far away and then from near by, in units of 1e-9 to 1e9:
+/// which of them may touch depends on the tolerance, and that on the camera.
+#[test]
+fn plates_that_nearly_touch_are_what_they_are_from_there() {
+    for unit in [1e-9, 1.0, 1e9] {
+        for gap in [0.0, 1e-14, 1e-13, 1e-12, 1e-11] {
+            let mut scene = furnace(1);
+            glass(&mut scene, "crown", 1.5, 0);
+            glass(&mut scene, "flint", 1.7, 0);
+            for (material, low) in [("crown", 0.0), ("flint", 0.5 + gap)] {
+                let corners = [[-1.0, low, -1.0], [1.0, low + 0.5, 1.0]].map(|corner| corner.map(|c| c * unit));
+                mesh(&mut scene, cuboid(corners[0], corners[1]), material);
+            }
+            let looking = |from: [f64; 3], at: [f64; 3]| {
+                let (eye, at) = (from.map(|c| c * unit), at.map(|c| c * unit));
+                Camera::new(eye, at, [0.1, 1.0, 0.2], [-unit, unit, -unit, unit], -2.0 * unit)
+            };
+            scene.camera = looking([40.0, 30.0, 50.0], [0.0; 3]);
+            let world = World::new(&scene).unwrap();
+            for at in [[1.0, 0.5, 1.0], [0.3, 0.5, 1.0], [1.0, 0.5 + gap, -0.2], [0.2, 0.0, 1.0], [1.0, 1.0 + gap, 1.0]]
+            {
+                for from in [[2.0, 0.6, 3.0], [3.0, 0.5, 2.0], [-2.0, 0.5 + 1e-3, 3.0], [0.4, 4.0, 0.3]] {
+                    let mut after = scene.clone();
+                    after.camera = looking(from, at);
+                    let [edited, new] = [world.edited(&scene, &after), World::new(&after)].map(Result::unwrap);
+                    assert!(Arc::ptr_eq(&edited.stage.tree, &world.stage.tree));
+                    let settings = Settings::from(&after);
+                    let [edited, new] = [&edited, &new].map(|world| trace_pixel(world, &settings, 0, 0).unwrap());
+                    assert_eq!(edited, new, "{gap} apart in units of {unit}, from {from:?} at {at:?}");
+                }
+            }
+        }
+    }
 }
 
 /// Two materials of one glass in a mesh may become another glass together, and not apart.

@@ -80,7 +80,8 @@ pub struct Stage {
 }
 
 impl Stage {
-    /// Nothing but a camera, in the dark.
+    /// Nothing but a camera, in the dark. Its reach and tolerances are 0: whoever adds shapes sets them to what follows from the size of
+    /// everything, without which models with media find nothing.
     pub fn new(camera: CameraFrame) -> Self {
         Self {
             camera,

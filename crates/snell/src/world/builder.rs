@@ -65,7 +65,7 @@ impl<'a> Builder<'a> {
             shape_warnings: Vec::new(),
             material_ids,
             parts: Parts::default(),
-            ground: Ground { extent: Bounds::EMPTY, margin: 0.0 },
+            ground: Ground { extent: Bounds::EMPTY, margin: 0.0, opaque: Arc::default() },
         })
     }
 

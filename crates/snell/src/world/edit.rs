@@ -2,6 +2,7 @@
 
 use super::World;
 use super::builder::Builder;
+use super::solid::find_touching;
 use super::tree::measure;
 use crate::geometry::bvh::Quality;
 use crate::scene::{Mesh, Problems, Scene};
@@ -63,8 +64,10 @@ impl Builder<'_> {
         (new.reach, new.coincidence_tolerance, new.exit_tolerance) =
             (old.reach, old.coincidence_tolerance, old.exit_tolerance);
         if new.camera.starts() != old.camera.starts() {
-            (new.reach, new.coincidence_tolerance) = measure(world.ground.extent, &new.camera);
+            let (everything, tolerance) = measure(world.ground.extent, &new.camera);
+            (new.reach, new.coincidence_tolerance) = (everything.diagonal(), tolerance);
             new.exit_tolerance = 0.5 * new.coincidence_tolerance;
+            find_touching(new, &world.ground.opaque);
         }
         for at in 0..new.solids.len() {
             let Solid { between_faces_of, primitive, .. } = new.solids[at];
@@ -76,7 +79,7 @@ impl Builder<'_> {
         }
         self.objects = Arc::clone(&world.objects);
         self.shape_warnings.clone_from(&world.shape_warnings);
-        self.ground = world.ground;
+        self.ground.clone_from(&world.ground);
     }
 }
 

@@ -23,24 +23,23 @@ struct About<'a> {
 
 /// A shape that stays one of its kind under every map.
 trait Placeable: Surface + Copy {
+    /// Does it enclose something?
+    const IS_SOLID: bool;
+
     fn under(&self, map: &Affine) -> Self;
     /// Is there anything to be hit?
     fn has_size(&self) -> bool;
-    /// Does it enclose something?
-    fn is_solid() -> bool;
     /// Where those of its kind are collected.
     fn list(parts: &mut Parts) -> &mut Vec<Self>;
 }
 
 impl Placeable for Rectangle {
+    const IS_SOLID: bool = false;
     fn under(&self, map: &Affine) -> Self {
         self.under(map)
     }
     fn has_size(&self) -> bool {
         self.has_area()
-    }
-    fn is_solid() -> bool {
-        false
     }
     fn list(parts: &mut Parts) -> &mut Vec<Self> {
         &mut parts.rectangles
@@ -48,14 +47,12 @@ impl Placeable for Rectangle {
 }
 
 impl Placeable for Cuboid {
+    const IS_SOLID: bool = true;
     fn under(&self, map: &Affine) -> Self {
         self.under(map)
     }
     fn has_size(&self) -> bool {
         self.has_volume()
-    }
-    fn is_solid() -> bool {
-        true
     }
     fn list(parts: &mut Parts) -> &mut Vec<Self> {
         &mut parts.cuboids
@@ -63,14 +60,12 @@ impl Placeable for Cuboid {
 }
 
 impl Placeable for Disc {
+    const IS_SOLID: bool = false;
     fn under(&self, map: &Affine) -> Self {
         self.under(map)
     }
     fn has_size(&self) -> bool {
         self.has_area()
-    }
-    fn is_solid() -> bool {
-        false
     }
     fn list(parts: &mut Parts) -> &mut Vec<Self> {
         &mut parts.discs
@@ -142,7 +137,7 @@ impl Builder<'_> {
                 return Err(problem(format!("`{name}` ends up beyond 1e15")));
             }
             let has_size = placed.has_size();
-            if !has_size && (S::is_solid() || key == "instances") {
+            if !has_size && (S::IS_SOLID || key == "instances") {
                 return Err(problem(format!("`{name}` is scaled by 0 here")));
             }
             let first = self.surfaces.material_of.len() as u32;
@@ -184,7 +179,7 @@ impl Builder<'_> {
             return Ok([self.side(about.inside, bounds), self.side(about.outside, bounds)]);
         }
         let medium = self.stage.materials[material as usize].medium();
-        if !S::is_solid() {
+        if !S::IS_SOLID {
             let mut mesh = TriangleMesh::default();
             shape.tessellate(&mut |corners| {
                 let number = corners.map(|corner| {

@@ -1,11 +1,10 @@
 //! Which solids a scene has, and which of them may touch something.
 
 use super::builder::Builder;
-use super::tree::ROOM;
 use crate::geometry::bvh::{Instance, Shapes};
 use crate::geometry::solid::{Component, EdgePlace, Found, Orientation, Report, Verdict, structure};
 use crate::geometry::{Affine, Bounds, TriangleMesh, Vec3};
-use crate::stage::{Medium, NO_PRIMITIVE, NO_SOLID, Solid};
+use crate::stage::{Medium, NO_PRIMITIVE, NO_SOLID, Solid, Stage};
 
 /// More solids than this, among as many objects, are not compared with each other: all count as touching.
 const COMPARED: usize = 2000;
@@ -106,15 +105,25 @@ pub(super) fn placed(solid: &Solid, map: &Affine) -> Solid {
     Solid { inward: solid.inward != map.mirrors(), bounds, ..solid.clone() }
 }
 
+/// Finds which solids may touch something: those whose box meets that of another solid, or one of these, within the tolerance.
+pub(super) fn find_touching(stage: &mut Stage, opaque: &[Bounds]) {
+    let solids = stage.solids.len();
+    let boxes: Vec<Bounds> = stage.solids.iter().map(|solid| solid.bounds).chain(opaque.iter().copied()).collect();
+    let room = Vec3::new(stage.coincidence_tolerance, stage.coincidence_tolerance, stage.coincidence_tolerance);
+    let too_many = solids.saturating_mul(boxes.len()) > COMPARED * COMPARED;
+    for (number, solid) in stage.solids.iter_mut().enumerate() {
+        let grown = Bounds { min: boxes[number].min - room, max: boxes[number].max + room };
+        solid.touches = too_many
+            || solid.between_faces_of.is_some()
+            || boxes.iter().enumerate().any(|(other, bounds)| other != number && grown.meets(bounds));
+    }
+}
+
 impl Builder<'_> {
-    /// Which solids may touch something: those whose box meets that of another solid or object.
-    pub(super) fn touching(&self, shapes: &Shapes<'_>, instances: &[Instance]) -> Vec<bool> {
-        if self.stage.solids.is_empty() {
-            return Vec::new();
-        }
-        // The boxes of the solids first, then those of everything that is none.
-        let mut boxes: Vec<Bounds> = self.stage.solids.iter().map(|solid| solid.bounds).collect();
-        for object in self.objects.iter() {
+    /// The boxes of what is no solid, object by object; none where there are no solids.
+    pub(super) fn boxes_without_solids(&self, shapes: &Shapes<'_>, instances: &[Instance]) -> Vec<Bounds> {
+        let mut boxes = Vec::new();
+        for object in self.objects.iter().filter(|_| !self.stage.solids.is_empty()) {
             let mut opaque = (object.first as usize..(object.first + object.count) as usize)
                 .filter(|&id| self.stage.interior_of(id) == NO_SOLID);
             if object.first as usize >= shapes.count() {
@@ -124,18 +133,7 @@ impl Builder<'_> {
                 boxes.extend(opaque.map(|id| shapes.bounds(id)).reduce(Bounds::union));
             }
         }
-        // As large as the tolerance may become while the tree stays.
-        let tolerance = ROOM * self.stage.coincidence_tolerance;
-        let room = Vec3::new(tolerance, tolerance, tolerance);
-        let too_many = self.stage.solids.len().saturating_mul(boxes.len()) > COMPARED * COMPARED;
-        let touches = |number: usize| {
-            let grown = Bounds { min: boxes[number].min - room, max: boxes[number].max + room };
-            let interface = self.stage.solids[number].between_faces_of.is_some();
-            too_many
-                || interface
-                || boxes.iter().enumerate().any(|(other, bounds)| other != number && grown.meets(bounds))
-        };
-        (0..self.stage.solids.len()).map(touches).collect()
+        boxes
     }
 
     /// Gives each solid one of its primitives, the first.

@@ -3,31 +3,33 @@
 use super::Object;
 use super::builder::Builder;
 use super::mesh::{Triangles, Which};
-use super::solid::placed;
+use super::solid::{find_touching, placed};
 use crate::geometry::Bounds;
 use crate::geometry::bvh::{self, Instance, MARGIN, Quality, Shapes};
 use crate::scene::{LARGEST_NUMBER, Problem, Step};
 use crate::stage::{CameraFrame, NO_PRIMITIVE, Placement};
 use std::sync::Arc;
 
-/// The boxes of the tree are that much larger than they must be, so that they may stay when rays start farther away: less than what
-/// rounding them to `f32` adds to them.
-pub(super) const ROOM: f64 = 16.0;
+/// The boxes of the tree are larger by that many tolerances, where one would do, so that they may stay when rays start farther away: by
+/// 2⁻⁴⁴ of the scene, beside which rounding to `f32` adds 2⁻²⁴ of a coordinate.
+const ROOM: f64 = 16.0;
 
 /// What the tree was built for.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Ground {
     /// All shapes, without the places where camera rays start.
     pub extent: Bounds,
     /// The largest tolerance for which the boxes of the tree are large enough.
     pub margin: f64,
+    /// The boxes of what is no solid; none where there are no solids.
+    pub opaque: Arc<Vec<Bounds>>,
 }
 
-/// The diagonal of everything, and what a hit may be off the plane of its face, but for instances. Rays start at the camera or on
-/// surfaces: no ray origin is farther from a primitive than the diagonal.
-pub(super) fn measure(extent: Bounds, camera: &CameraFrame) -> (f64, f64) {
+/// The box around everything, and what a hit may be off the plane of its face, but for instances. Rays start at the camera or on
+/// surfaces: no ray origin is farther from a primitive than the diagonal of the box.
+pub(super) fn measure(extent: Bounds, camera: &CameraFrame) -> (Bounds, f64) {
     let everything = extent.union(camera.starts());
-    (everything.diagonal(), MARGIN * (everything.diagonal() + everything.farthest()))
+    (everything, MARGIN * (everything.diagonal() + everything.farthest()))
 }
 
 impl Builder<'_> {
@@ -61,9 +63,9 @@ impl Builder<'_> {
             extent = extent.union(bounds);
             boxes.push(bounds);
         }
-        (self.stage.reach, self.stage.coincidence_tolerance) = measure(extent, &self.stage.camera);
-        let everything = extent.union(self.stage.camera.starts());
+        let (everything, tolerance) = measure(extent, &self.stage.camera);
         let (reach, farthest) = (everything.diagonal(), everything.farthest());
+        (self.stage.reach, self.stage.coincidence_tolerance) = (reach, tolerance);
         // In the space of a model rays come from everywhere that any of its instances sees, and start a little behind.
         let mut seen: Vec<Bounds> = self.parts.models.iter().map(|m| Bounds::of(m.vertices.iter().copied())).collect();
         let mut norms = vec![0.0; self.parts.models.len()];
@@ -107,13 +109,11 @@ impl Builder<'_> {
             bvh::build(&shapes, vec![], margin, quality, threads)
         });
         let models = models.collect();
-        let touching = self.touching(&shapes, &instances);
+        let opaque = Arc::new(self.boxes_without_solids(&shapes, &instances));
         let shapes = Shapes { instances: &instances, ..shapes };
-        self.ground = Ground { extent, margin: ROOM * self.stage.coincidence_tolerance };
+        self.ground = Ground { extent, margin: ROOM * self.stage.coincidence_tolerance, opaque };
         self.stage.tree = Arc::new(bvh::build(&shapes, models, self.ground.margin, quality, threads));
-        for (solid, touches) in self.stage.solids.iter_mut().zip(touching) {
-            solid.touches = touches;
-        }
+        find_touching(&mut self.stage, &self.ground.opaque);
         self.find_primitives();
         Ok(())
     }

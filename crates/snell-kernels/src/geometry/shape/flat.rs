@@ -25,8 +25,8 @@ pub fn meet_plane<L: Lanes>(
     (t.max(enter).min(leave), t.eq(t) & enter.le(leave))
 }
 
-/// Where a ray whose direction has this inverse enters and leaves a box, seen from its origin, with [`SLACK`]: the slab test of the tree, by the same operations, so
-/// that its larger boxes are entered no later and left no earlier.
+/// Where a ray whose direction has this inverse enters and leaves a box, seen from its origin, with [`SLACK`]: the slab test of the tree,
+/// by the same operations, so that its larger boxes are entered no later and left no earlier.
 #[inline(always)]
 pub fn box_along<L: Lanes>(i: Vec3<L>, low: Vec3<L>, high: Vec3<L>) -> [L; 2] {
     let far = high.x.max(-low.x).max(high.y.max(-low.y)).max(high.z.max(-low.z));
