@@ -37,7 +37,7 @@ pub fn find(name: &str, size: u32) -> Result<Scene, String> {
 
 fn lecture(size: u32) -> Result<Scene, String> {
     let loaded = load("lecture/default", &LoadOptions::default()).map_err(|reports| format!("{reports:?}"))?;
-    let mut scene = loaded.scene;
+    let mut scene = loaded.into_scene();
     scene.render.size = [size, size];
     Ok(scene)
 }

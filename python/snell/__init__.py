@@ -20,11 +20,11 @@ from .parts import Box, Camera, Disc, Globe, Lathe, Light, Material, Mesh, Plane
 from .picture import Difference, Picture, Sightings
 from .scene import Scene, scenes
 from .sweep import sweep
-from .tree import Figure, Hit, LightThere, Local, Node, RayTree, Sample
+from .tree import Figure, Hit, LightAtHit, Local, Node, RayTree, Sample
 
 __all__ = [
     "Box", "Camera", "Channels", "Difference", "Disc", "Figure", "Globe", "Hit", "Interactive", "Lathe", "Light",
-    "LightThere", "Local", "Material", "Mesh", "Node", "OpticsError", "Picture", "PictureError", "Plane", "RayTree",
+    "LightAtHit", "Local", "Material", "Mesh", "Node", "OpticsError", "Picture", "PictureError", "Plane", "RayTree",
     "Render", "RenderError", "Sample", "Scene", "SceneError", "Sightings", "Sky", "SnellError", "SnellWarning",
     "Sphere", "Sweep", "Texture", "View", "__version__", "interact", "optics", "scenes", "sweep",
 ]  # fmt: skip

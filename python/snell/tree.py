@@ -64,7 +64,7 @@ class Hit:
 
 
 @dataclass(frozen=True)
-class LightThere:
+class LightAtHit:
     """What a light does at a surface.
 
     Attributes
@@ -109,13 +109,13 @@ class Local:
     ----------
     ambient, emission : (float, float, float)
         Ambient light, and what the surface sends out by itself, linear.
-    lights : tuple of LightThere
+    lights : tuple of LightAtHit
         What each light of the scene does here, in the order of the scene.
     """
 
     ambient: Numbers
     emission: Numbers
-    lights: tuple[LightThere, ...]
+    lights: tuple[LightAtHit, ...]
 
 
 @dataclass(frozen=True)
@@ -332,5 +332,5 @@ def _node(table: dict[str, Any]) -> Node:
         **_tuples(table),
         hit=hit and Hit(**_tuples(hit)),
         local=local
-        and Local(**_tuples(local | {"lights": [LightThere(**_tuples(light)) for light in local["lights"]]})),
+        and Local(**_tuples(local | {"lights": [LightAtHit(**_tuples(light)) for light in local["lights"]]})),
     )

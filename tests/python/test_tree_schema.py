@@ -18,7 +18,7 @@ CLASSES = {
     "ExplainedNode": tree.Node,
     "ExplainedHit": tree.Hit,
     "LocalLight": tree.Local,
-    "ExplainedLight": tree.LightThere,
+    "LightAtHit": tree.LightAtHit,
 }
 SIMPLE = {"string": str, "number": float, "integer": int, "boolean": bool, "null": type(None)}
 

@@ -9,7 +9,7 @@ import type { ViewScene } from './generated/view';
 export type {
   Ending,
   ExplainedHit as Hit,
-  ExplainedLight as LightAtHit,
+  LightAtHit,
   ExplainedNode as RayNode,
   ExplainedSample as Sample,
   LocalLight,

@@ -5,10 +5,12 @@ use crate::excerpt::plain;
 use crate::input;
 use crate::output::{is_standard, refuse_existing, refuse_inputs};
 use crate::say::{self, FAILED, Failure, OrFail, Outcome, SCENE, USAGE};
+use snell::scene::Scene;
 use snell_formats::load::Loaded;
 use snell_formats::scene_file::{self, Syntax};
 use snell_formats::{LoadOptions, Report, disk};
 use std::path::{Component, Path, PathBuf};
+use std::sync::Arc;
 
 pub fn run(args: &ConvertArgs) -> Outcome {
     let output = args.output.as_deref().filter(|output| !is_standard(output));
@@ -28,16 +30,17 @@ pub fn run(args: &ConvertArgs) -> Outcome {
     let target = output.map(disk::behind_links);
     let folder = target.as_deref().and_then(Path::parent).unwrap_or(Path::new(""));
     let name_of = |path: &Path| relative(path, folder);
-    for (mesh, path) in loaded.scene.meshes.iter_mut().zip(&loaded.mesh_paths) {
+    let scene = Arc::make_mut(&mut loaded.scene);
+    for (mesh, path) in scene.meshes.iter_mut().zip(&loaded.mesh_paths) {
         if let Some(path) = path {
             mesh.file = Some(name_of(path));
         }
     }
-    for texture in loaded.scene.textures.values_mut() {
+    for texture in scene.textures.values_mut() {
         let path = texture.image.as_ref().and_then(|image| loaded.picture_paths.get(image));
         texture.image = path.map(|path| name_of(path)).or(texture.image.take());
     }
-    if let Some(sky) = &mut loaded.scene.sky {
+    if let Some(sky) = &mut scene.sky {
         let path = sky.image.as_ref().and_then(|image| loaded.picture_paths.get(image));
         sky.image = path.map(|path| name_of(path)).or(sky.image.take());
     }
@@ -56,7 +59,7 @@ pub fn run(args: &ConvertArgs) -> Outcome {
     refuse_inputs(output, read.into_iter().chain(input::standard(&args.file)))?;
     refuse_existing(output, args.force).or_fail(FAILED)?;
     disk::check_writable(output).or_fail(FAILED)?;
-    let written = scene_file::save(loaded.scene.clone(), output, syntax, &heading).or_fail(FAILED)?;
+    let written = scene_file::save(Scene::clone(&loaded.scene), output, syntax, &heading).or_fail(FAILED)?;
     for file in &written {
         say::tell(&file.display().to_string());
     }

@@ -89,7 +89,7 @@ fn about_picture(picture: &Picture, args: &InfoArgs) -> Outcome {
 const SHOWN: usize = 20;
 
 fn about_scene(loaded: &Loaded, world: &World) -> String {
-    let Scene { render, camera, lights, materials, spheres, meshes, planes, boxes, discs, lathes, .. } = &loaded.scene;
+    let Scene { render, camera, lights, materials, spheres, meshes, planes, boxes, discs, lathes, .. } = &*loaded.scene;
     let mut text = format!("{}\n", loaded.source.name);
     let mut line = |name: &str, value: String| {
         let _ = writeln!(text, "  {name:12}{value}");

@@ -8,27 +8,20 @@ use crate::say::{FAILED, Failure, Outcome, USAGE, tell};
 use snell::explain::{Path as Way, layers, only};
 use snell::film::{Crop, Film, Rgb};
 use snell::render::Options;
-use snell::world::World;
+use snell::world::{CompiledScene, World};
 use snell_formats::Report;
-use snell_formats::load::Loaded;
 use snell_formats::picture::{self, Format};
 use snell_formats::recipe::Recipe;
 use snell_formats::report::known_names;
 use std::path::Path;
 
 /// Renders one layer for each of the strongest ways, or one way only.
-pub fn run(
-    world: &World,
-    loaded: &Loaded,
-    mut recipe: Recipe,
-    args: &RenderArgs,
-    output: &Path,
-    format: Format,
-) -> Outcome {
+pub fn run(compiled: &CompiledScene, mut recipe: Recipe, args: &RenderArgs, output: &Path, format: Format) -> Outcome {
     if recipe.crop.is_some() {
         let report = Report::error("--paths and --only look at whole pictures");
         return Err(Failure::new(USAGE, report.help("leave out --crop, or choose a smaller --size")));
     }
+    let world = compiled.world();
     let way = recipe.only.as_ref().map(|text| way(text, world)).transpose()?;
     if way.is_none() && format != Format::Exr {
         let report = Report::error("only EXR pictures have layers").help("name one, like -o paths.exr");
@@ -40,19 +33,19 @@ pub fn run(
     let options = Options { threads: args.threads.into(), progress: Some(&update), ..Options::default() };
     let before = recipe.film_sha256.take();
     if let Some(way) = way {
-        let pixels = only(world, &loaded.scene, &way, &options).unwrap_or_default();
+        let pixels = only(compiled, &way, &options).unwrap_or_default();
         reporter.finish();
         let seen = pixels.iter().filter(|pixel| **pixel != Rgb::gray(0.0)).count();
         say(args, &format!("{}: {way}, in {seen} of {} pixels", output::shown(output), pixels.len()));
         let film = film([width, height], pixels)?;
-        let encoding = loaded.scene.render.encoding();
+        let encoding = compiled.scene().render.encoding();
         recipe.remember(&film);
         let text = recipe.to_json();
         output::write(output, |out| picture::write_to(out, format, &film, encoding, Some(&text)))?;
         return same_film(&recipe, before.as_deref());
     }
     let most = recipe.paths.unwrap_or_default() as usize;
-    let split = layers(world, &loaded.scene, most, &options).unwrap_or_default();
+    let split = layers(compiled, most, &options).unwrap_or_default();
     reporter.finish();
     let total: f64 = split.picture.iter().map(|c| c.mean()).sum();
     // A black picture has no shares.

@@ -9,7 +9,7 @@ use crate::recipe::{of_picture, of_scene, same_film, short_hash, widened};
 use crate::say::{self, FAILED, Failure, INTERRUPTED, OrFail, Outcome, SCENE, USAGE, tell};
 use crate::signals;
 use serde_json::json;
-use snell::explain::{Names, black_picture};
+use snell::explain::black_picture;
 use snell::film::transfer::Encoding;
 use snell::film::{BYTES_PER_PIXEL, Crop};
 use snell::render::{Options, RenderError, Rendered, Settings, render};
@@ -213,14 +213,15 @@ fn one(name: &str, args: &RenderArgs, output: &Path, inputs: &mut Vec<PathBuf>) 
     let read = loaded.files().chain([Path::new(&recipe.name)]).chain(input::standard(name));
     inputs.extend(read.map(Path::to_owned));
     refuse_inputs(output, inputs.iter().map(PathBuf::as_path))?;
-    let bounds = recipe.apply(&mut loaded.scene);
+    let bounds = recipe.apply(loaded.scene_mut());
     recipe.resolve(&loaded.scene);
     let preparing = Phase::start(args.progress, args.quiet, "preparing", &recipe.name);
-    let world = loaded.build(args.bvh, args.threads.into()).or_fail(SCENE)?;
+    let compiled = loaded.compile(&recipe.name, args.bvh, args.threads.into()).or_fail(SCENE)?;
+    let world = compiled.world();
     drop(preparing);
     let note = bounds.map(|bounds| widened(loaded.scene.render.size, bounds));
     let widened = note.map(|note| Report::warning(WarningCode::WidenedBounds, note));
-    let warnings: Vec<Report> = widened.into_iter().chain(loaded.warnings_with(&world)).collect();
+    let warnings: Vec<Report> = widened.into_iter().chain(loaded.warnings_with(world)).collect();
     warn(&warnings, args);
     let format = format(output, args)?;
     let format = if format == (Format::Png { sixteen_bit: false }) {
@@ -228,14 +229,14 @@ fn one(name: &str, args: &RenderArgs, output: &Path, inputs: &mut Vec<PathBuf>) 
     } else {
         format
     };
-    enough_memory(&world, recipe.crop)?;
+    enough_memory(world, recipe.crop)?;
     if format == Format::Exr && world.camera.size.iter().any(|&n| n > i32::MAX as u32) {
         let report = Report::error("an EXR picture has at most 2147483647 pixels in a row or column");
         return Err(Failure::new(USAGE, report));
     }
 
     if recipe.paths.is_some() || recipe.only.is_some() {
-        return paths::run(&world, &loaded, recipe, args, output, format);
+        return paths::run(&compiled, recipe, args, output, format);
     }
     let reporter = Reporter::new(args.progress, args.quiet, &recipe.name);
     let started = Instant::now();
@@ -252,8 +253,8 @@ fn one(name: &str, args: &RenderArgs, output: &Path, inputs: &mut Vec<PathBuf>) 
         cancel: Some(&CANCEL),
         ..Options::default()
     };
-    let settings = Settings::from(&loaded.scene);
-    let rendered = render(&world, &settings, &options).map_err(|e| {
+    let settings = compiled.settings();
+    let rendered = render(world, &settings, &options).map_err(|e| {
         let code = if matches!(e, RenderError::CropOutside { .. }) { USAGE } else { SCENE };
         Failure::new(code, Report::error(e.to_string()))
     })?;
@@ -286,9 +287,9 @@ fn one(name: &str, args: &RenderArgs, output: &Path, inputs: &mut Vec<PathBuf>) 
         }
         return Err(Failure { code, reports });
     }
-    let mut odd = snell::render::warnings(&rendered.statistics, &world, &settings);
-    odd.extend(black_picture(&Names { world: &world, scene: &loaded.scene }, &rendered.film));
-    summary(&recipe, &world, &settings, &rendered, &odd, args, &options, output, seconds);
+    let mut odd = snell::render::warnings(&rendered.statistics, world, &settings);
+    odd.extend(black_picture(&compiled, &rendered.film));
+    summary(&recipe, world, &settings, &rendered, &odd, args, &options, output, seconds);
     if !finished {
         return Err(Failure { code: INTERRUPTED, reports: Vec::new() });
     }

@@ -7,7 +7,7 @@ use crate::world::Ready;
 use numpy::PyArray2;
 use pyo3::prelude::*;
 use snell::explain::text::{Piece, Style, text};
-use snell::explain::{Explanation, Names, Sightings, explain, find as find_object};
+use snell::explain::{Explanation, Sightings, explain, find as find_object};
 use snell_formats::figure::figure;
 use snell_formats::page::{VIEWER, page};
 use snell_formats::report::known_names;
@@ -28,8 +28,8 @@ pub struct NativeTree {
 
 impl NativeTree {
     pub fn of(py: Python<'_>, ready: &Arc<Ready>, x: u32, y: u32) -> PyResult<Option<Self>> {
-        let world = ready.world(py)?;
-        let explained = py.detach(|| explain(world, &ready.scene, &ready.name, x, y));
+        let compiled = ready.compiled(py)?;
+        let explained = py.detach(|| explain(compiled, x, y));
         Ok(explained.map(|(explanation, _)| Self { explanation, ready: Arc::clone(ready) }))
     }
 }
@@ -76,8 +76,8 @@ impl NativeTree {
 
     /// The page with the rays in 3D.
     fn html(&self, py: Python<'_>) -> PyResult<String> {
-        let names = Names { world: self.ready.world(py)?, scene: &self.ready.scene };
-        Ok(py.detach(|| page(&self.explanation, &names)))
+        let compiled = self.ready.compiled(py)?;
+        Ok(py.detach(|| page(&self.explanation, compiled)))
     }
 }
 
@@ -90,15 +90,15 @@ pub type Seen<'py> = (Vec<(String, u64)>, Bound<'py, PyArray2<f64>>);
 
 /// Where an object is seen.
 pub fn find<'py>(py: Python<'py>, ready: &Ready, object: &str, progress: Option<&Py<PyAny>>) -> PyResult<Seen<'py>> {
-    let (world, scene) = (ready.world(py)?, &ready.scene);
-    let known = world.object_names();
+    let compiled = ready.compiled(py)?;
+    let known = compiled.world().object_names();
     if !known.contains(&object) {
         let message = format!("no object is called `{object}`");
         return Err(raise(py, "SceneError", vec![(None, message, Some(known_names(object, known)))]));
     }
-    let work = watched(py, 0, None, progress, |options| find_object(world, scene, object, options));
+    let work = watched(py, 0, None, progress, |options| find_object(compiled, object, options));
     let Sightings { paths, mask } = unless_stopped(work)?;
     let paths = paths.into_iter().map(|(path, pixels)| (path.to_string(), pixels)).collect();
-    let [width, height] = world.camera.size.map(|length| length as usize);
+    let [width, height] = compiled.world().camera.size.map(|length| length as usize);
     Ok((paths, shaped(py, [height, width], mask)?))
 }

@@ -75,7 +75,7 @@ fn numbered<T>(all: impl Iterator<Item = Option<Arc<T>>>) -> (Vec<Arc<T>>, Vec<O
 impl<'py> ReadyState<'py> {
     pub fn of(py: Python<'py>, ready: &Ready) -> PyResult<Self> {
         let Ready { name, folder, models, scene, .. } = ready;
-        let mut bare = scene.clone();
+        let mut bare = Scene::clone(scene);
         for mesh in &mut bare.meshes {
             (mesh.vertices, mesh.faces) = (Vec::new(), Vec::new());
         }

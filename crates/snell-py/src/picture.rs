@@ -10,10 +10,10 @@ use numpy::{PyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArr
 use pyo3::exceptions::{PyKeyboardInterrupt, PyRuntimeError};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
-use snell::explain::{Channels, Names, ViewScene, black_picture, channels, hits};
+use snell::explain::{Channels, ViewScene, black_picture, channels, hits};
 use snell::film::transfer::{Encoding, Rounding, Transfer};
 use snell::film::{Crop, Film, Rgb};
-use snell::render::{RenderError, Rendered, Settings, render};
+use snell::render::{RenderError, Rendered, render};
 use snell::scene::Warning;
 use snell_formats::Report;
 use snell_formats::load::Kind;
@@ -58,7 +58,8 @@ impl NativePicture {
         progress: Option<&Py<PyAny>>,
     ) -> PyResult<Self> {
         let started = Instant::now();
-        let (world, settings) = (ready.world(py)?, Settings::from(&ready.scene));
+        let compiled = ready.compiled(py)?;
+        let (world, settings) = (compiled.world(), compiled.settings());
         let (rendered, stopped) = watched(py, threads, crop, progress, |options| render(world, &settings, options));
         let seconds = started.elapsed().as_secs_f64();
         match stopped {
@@ -72,7 +73,7 @@ impl NativePicture {
             _ => raise(py, "RenderError", vec![(None, error.to_string(), None)]),
         };
         let Rendered { film, statistics } = rendered.map_err(failed)?;
-        let black = black_picture(&Names { world, scene: &ready.scene }, &film);
+        let black = black_picture(compiled, &film);
         let warnings = snell::render::warnings(&statistics, world, &settings).into_iter().chain(black);
         let text = |warning: Warning| format!("{warning}{}", errors::advice(warning.code));
         let warnings = warnings.map(|warning| (warning.code.code().to_owned(), text(warning))).collect();
@@ -180,7 +181,8 @@ impl NativePicture {
 
     /// What the camera's rays met: depth, normal, number of the object; and the names of the objects.
     fn channels<'py>(&self, py: Python<'py>, progress: Option<Py<PyAny>>) -> PyResult<NativeChannels<'py>> {
-        let (world, settings) = (self.ready.world(py)?, Settings::from(&self.ready.scene));
+        let compiled = self.ready.compiled(py)?;
+        let (world, settings) = (compiled.world(), compiled.settings());
         let crop = Some(self.film.crop);
         let work = watched(py, 0, crop, progress.as_ref(), |options| channels(world, &settings, options));
         let Channels { depth, normal, object } = unless_stopped(work)?;
@@ -196,7 +198,8 @@ impl NativePicture {
 
     /// How many surfaces the rays of each pixel met.
     fn hits<'py>(&self, py: Python<'py>, progress: Option<Py<PyAny>>) -> PyResult<Bound<'py, PyArray2<u32>>> {
-        let (world, settings) = (self.ready.world(py)?, Settings::from(&self.ready.scene));
+        let compiled = self.ready.compiled(py)?;
+        let (world, settings) = (compiled.world(), compiled.settings());
         let crop = Some(self.film.crop);
         let work = watched(py, 0, crop, progress.as_ref(), |options| hits(world, &settings, options));
         shaped(py, self.shape(), unless_stopped(work)?)
@@ -204,8 +207,7 @@ impl NativePicture {
 
     /// The scene as the viewer draws it, in JSON.
     fn view(&self, py: Python<'_>) -> PyResult<String> {
-        let names = Names { world: self.ready.world(py)?, scene: &self.ready.scene };
-        Ok(serde_json::to_string(&ViewScene::of(&names)).unwrap_or_default())
+        Ok(serde_json::to_string(&ViewScene::of(self.ready.compiled(py)?)).unwrap_or_default())
     }
 
     /// Why a pixel of the whole picture has its colour.

@@ -104,8 +104,9 @@ fn builtin_scenes() -> Vec<(&'static str, &'static str)> {
 fn read(py: Python<'_>, name: String) -> PyResult<(String, Arrays<'_>, PathBuf)> {
     let loaded = py.detach(|| load(&name, &LoadOptions::default()));
     let loaded = loaded.map_err(|reports| failed(py, &reports, None))?;
-    let (text, arrays) = hand_over(py, loaded.scene)?;
-    Ok((text, arrays, loaded.folder))
+    let folder = loaded.folder.clone();
+    let (text, arrays) = hand_over(py, loaded.into_scene())?;
+    Ok((text, arrays, folder))
 }
 
 /// A scene in JSON that someone else wrote.

@@ -6,9 +6,8 @@ use crate::picture::NativePicture;
 use crate::scene::Inline;
 use pyo3::prelude::*;
 use snell::film::Crop;
-use snell::geometry::bvh::Quality;
 use snell::scene::{Mesh, Problems, Scene, Warning};
-use snell::world::World;
+use snell::world::CompiledScene;
 use snell_formats::load::{Kind, ModelFile, load_with};
 use snell_formats::scene_file::{self, Syntax};
 use snell_formats::{LoadOptions, Report, Source};
@@ -29,7 +28,7 @@ pub fn read_files(source: &Source, folder: &Path, inline: &Inline) -> Result<Rea
     let findings = |reports: &[Report]| reports.iter().map(|report| errors::report(report, Some(source))).collect();
     let loaded = load_with(source.clone(), Kind::Json, folder, &LoadOptions::default(), |scene| inline.fill(scene));
     let loaded = loaded.map_err(|reports| findings(&reports))?;
-    Ok(Read { warnings: findings(&loaded.warnings), scene: loaded.scene, models: loaded.models })
+    Ok(Read { warnings: findings(&loaded.warnings), models: loaded.models.clone(), scene: loaded.into_scene() })
 }
 
 /// Do two scenes read the same files, in the same way?
@@ -53,26 +52,26 @@ pub struct Ready {
     /// What is described, without what files and arrays hold.
     pub described: Scene,
     /// The same with its files, and its triangles.
-    pub scene: Scene,
+    pub scene: Arc<Scene>,
     pub folder: PathBuf,
     pub models: Vec<ModelFile>,
-    world: OnceLock<Result<World, Vec<Finding>>>,
+    compiled: OnceLock<Result<CompiledScene, Vec<Finding>>>,
 }
 
 impl Ready {
     /// A scene that is compiled when someone asks for its world.
     pub fn later(name: String, described: Scene, scene: Scene, folder: PathBuf, models: Vec<ModelFile>) -> Self {
-        Self { name, described, scene, folder, models, world: OnceLock::new() }
+        Self { name, described, scene: Arc::new(scene), folder, models, compiled: OnceLock::new() }
     }
 
-    fn compiled(&self) -> Result<&World, &Vec<Finding>> {
-        let compile = || World::build(&self.scene, Quality::default(), 0).map_err(findings);
-        self.world.get_or_init(compile).as_ref()
+    fn compile(&self) -> Result<&CompiledScene, &Vec<Finding>> {
+        let compile = || CompiledScene::new(self.name.as_str(), Arc::clone(&self.scene)).map_err(findings);
+        self.compiled.get_or_init(compile).as_ref()
     }
 
-    /// The world.
-    pub fn world(&self, py: Python<'_>) -> PyResult<&World> {
-        py.detach(|| self.compiled()).map_err(|findings| raise(py, "SceneError", findings.clone()))
+    /// The scene with its world.
+    pub fn compiled(&self, py: Python<'_>) -> PyResult<&CompiledScene> {
+        py.detach(|| self.compile()).map_err(|findings| raise(py, "SceneError", findings.clone()))
     }
 
     /// The text of the scene, as a picture remembers it.
@@ -112,13 +111,12 @@ impl NativeWorld {
     ) -> Result<Self, Vec<Finding>> {
         let Read { scene, models, warnings: read_warnings } = read;
         let ready = Ready::later(name, described, scene, folder, models);
-        let before = before.and_then(|before| Some((&before.ready.scene, before.ready.world.get()?.as_ref().ok()?)));
-        if let Some((scene, world)) = before {
-            let edited = world.edited(scene, &ready.scene);
+        if let Some(Ok(before)) = before.and_then(|before| before.ready.compiled.get()) {
+            let edited = before.edited(Arc::clone(&ready.scene));
             // Nobody else has it yet, so that nothing is there.
-            let _ = ready.world.set(edited.map_err(findings));
+            let _ = ready.compiled.set(edited.map_err(findings));
         }
-        let world = ready.compiled().map_err(Clone::clone)?;
+        let world = ready.compile().map_err(Clone::clone)?.world();
         let text = |w: &Warning| format!("{w}{}", errors::advice(w.code));
         let of_world = world.warnings.iter().map(|w| (Some(errors::path(&w.place)), text(w), None));
         let warnings = read_warnings.iter().cloned().chain(of_world).collect();

@@ -11,7 +11,7 @@ use snell::geometry::{Affine, TriangleMesh, Vec3};
 use snell::render::{Options, Settings, render};
 use snell::scene::{Integrator, Light, Material, Mesh, OpenMesh, Plane, Scene, Shadows, Transform, WarningCode};
 use snell::trace::RayKind;
-use snell::world::World;
+use snell::world::{CompiledScene, World};
 use snell_test_scenes::glass::cuboid;
 use snell_test_scenes::matrix::{THREADS, all_ways};
 use std::sync::Arc;
@@ -270,8 +270,8 @@ fn shadows_are_as_dense_as_what_casts_them() {
         [-1.0, 1.0, -1.0, 1.0],
         -1.0,
     );
-    let world = World::new(&scene).unwrap();
-    let (found, _) = explain(&world, &scene, "leaf", 0, 0).unwrap();
+    let compiled = CompiledScene::new("leaf", scene.clone()).unwrap();
+    let (found, _) = explain(&compiled, 0, 0).unwrap();
     let light = &found.samples[0].nodes[0].local.as_ref().unwrap().lights[0];
     assert_eq!((light.blocked_by.as_deref(), light.through.len()), (Some("leaf"), 0));
     // Several veils between: each takes its share, also from within glass.

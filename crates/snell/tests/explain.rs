@@ -5,11 +5,11 @@
 mod common;
 
 use common::leaves;
-use snell::explain::{Ending, Explanation, Names, Path, channels, explain, find, hits, layers};
+use snell::explain::{Ending, Explanation, Path, channels, explain, find, hits, layers};
 use snell::film::{Crop, Rgb};
 use snell::render::{Options, Settings, render, trace_pixel};
 use snell::scene::{Integrator, Scene, Shadows};
-use snell::world::World;
+use snell::world::{CompiledScene, World};
 use snell_formats::builtin::SCENES;
 use snell_formats::{LoadOptions, load};
 use snell_test_scenes::glass;
@@ -20,7 +20,7 @@ fn scenes(group: &str, size: u32) -> Vec<(String, Scene)> {
     let mut all = Vec::new();
     for (name, _) in SCENES.iter().filter(|(name, _)| name.starts_with(group)) {
         for integrator in [Integrator::Lecture, Integrator::Whitted] {
-            let mut scene = load(name, &LoadOptions::default()).unwrap().scene;
+            let mut scene = load(name, &LoadOptions::default()).unwrap().into_scene();
             scene.render.size = [size, size];
             scene.render.integrator = integrator;
             // Some rays carry less in one model than in the other; what matters here is that all kinds are there.
@@ -59,11 +59,11 @@ fn folded(explanation: &Explanation) -> [f64; 3] {
 }
 
 fn adds_up(name: &str, scene: &Scene) {
-    let world = World::new(scene).unwrap();
-    let film = render(&world, &Settings::from(scene), &Options::default()).unwrap().film;
-    let width = world.camera.size[0];
+    let compiled = CompiledScene::new(name, scene.clone()).unwrap();
+    let film = render(compiled.world(), &compiled.settings(), &Options::default()).unwrap().film;
+    let width = film.full_size[0];
     for (number, pixel) in (0u32..).zip(&film.pixels) {
-        let (explanation, _) = explain(&world, scene, name, number % width, number / width).unwrap();
+        let (explanation, _) = explain(&compiled, number % width, number / width).unwrap();
         let bits = |c: [f64; 3]| c.map(f64::to_bits);
         assert_eq!(bits(folded(&explanation)), bits(pixel.to_array()), "{name}, pixel {number}");
         assert_eq!(bits(explanation.color), bits(pixel.to_array()));
@@ -89,7 +89,7 @@ fn every_pixel_of_the_gallery_adds_up() {
 #[test]
 fn every_pixel_of_hard_scenes_adds_up() {
     let course = |integrator| {
-        let mut scene = load("lecture/default", &LoadOptions::default()).unwrap().scene;
+        let mut scene = load("lecture/default", &LoadOptions::default()).unwrap().into_scene();
         (scene.render.size, scene.render.integrator) = ([48, 48], integrator);
         scene
     };
@@ -103,7 +103,7 @@ fn every_pixel_of_hard_scenes_adds_up() {
     ];
     for entry in std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/models")).unwrap() {
         let path = entry.unwrap().path();
-        let mut scene = load(path.to_str().unwrap(), &LoadOptions::default()).unwrap().scene;
+        let mut scene = load(path.to_str().unwrap(), &LoadOptions::default()).unwrap().into_scene();
         (scene.render.size, scene.render.spp) = ([48, 48], 2);
         all.push((path.display().to_string(), scene));
     }
@@ -122,14 +122,14 @@ fn the_bounds_hold_ten_levels_deeper() {
     let shallow = shallow.chain([("leaves".to_owned(), holes)]);
     for (name, mut scene) in shallow {
         (scene.render.max_depth, scene.render.min_throughput, scene.render.bands) = (2, 0.0, 3);
-        let world = World::new(&scene).unwrap();
+        let compiled = CompiledScene::new(name.as_str(), scene.clone()).unwrap();
         let mut deep = scene.clone();
         deep.render.max_depth = 12;
         let deeper = render(&World::new(&deep).unwrap(), &Settings::from(&deep), &Options::default()).unwrap().film;
-        let width = world.camera.size[0];
+        let width = compiled.world().camera.size[0];
         let mut used = 0.0f64;
         for (number, pixel) in (0u32..).zip(&deeper.pixels) {
-            let (explanation, trace) = explain(&world, &scene, &name, number % width, number / width).unwrap();
+            let (explanation, trace) = explain(&compiled, number % width, number / width).unwrap();
             let bounds = explanation.samples.iter().flat_map(|s| &s.nodes).filter_map(|n| n.bound);
             let open = bounds.fold([0.0; 3], |sum, b| [sum[0] + b[0], sum[1] + b[1], sum[2] + b[2]]);
             let missing = (*pixel - trace.radiance).to_array();
@@ -149,9 +149,10 @@ fn the_bounds_hold_ten_levels_deeper() {
 #[test]
 fn layers_add_up_to_the_picture() {
     for (name, scene) in scenes("gallery/bubbles", 24).into_iter().chain(scenes("lecture/default", 32)) {
-        let world = World::new(&scene).unwrap();
-        let film = render(&world, &Settings::from(&scene), &Options::default()).unwrap().film;
-        let split = layers(&world, &scene, 5, &Options::default()).unwrap();
+        let compiled = CompiledScene::new(name.as_str(), scene).unwrap();
+        let settings = compiled.settings();
+        let film = render(compiled.world(), &settings, &Options::default()).unwrap().film;
+        let split = layers(&compiled, 5, &Options::default()).unwrap();
         assert_eq!(split.picture, film.pixels, "{name}");
         let left = split.rest.iter().any(|c| *c != Rgb::gray(0.0));
         // Bubbles have few ways in the lecture's model, which refracts only in spheres; the others have more than five.
@@ -160,13 +161,8 @@ fn layers_add_up_to_the_picture() {
         for (i, pixel) in film.pixels.iter().enumerate() {
             let all = split.layers.iter().map(|(_, pixels)| pixels[i]).chain([split.rest[i]]);
             let (sum, count) = all.fold((Rgb::gray(0.0), 0.0), |(sum, count), c| (sum + c, count + 1.0));
-            let trace = trace_pixel(
-                &world,
-                &Settings::from(&scene),
-                i as u32 % film.width() as u32,
-                i as u32 / film.width() as u32,
-            )
-            .unwrap();
+            let (width, i) = (film.width() as u32, i as u32);
+            let trace = trace_pixel(compiled.world(), &settings, i % width, i / width).unwrap();
             let additions = count + trace.samples.iter().map(|s| s.nodes.len()).sum::<usize>() as f64;
             for (sum, pixel) in sum.to_array().into_iter().zip(pixel.to_array()) {
                 // One ulp for each addition.
@@ -181,17 +177,18 @@ fn layers_add_up_to_the_picture() {
 
 #[test]
 fn an_object_is_found_in_all_pixels_that_show_it() {
-    let mut scene = load("lecture/default", &LoadOptions::default()).unwrap().scene;
+    let mut scene = load("lecture/default", &LoadOptions::default()).unwrap().into_scene();
     scene.render.size = [96, 96];
-    let world = World::new(&scene).unwrap();
-    let found = find(&world, &scene, "green", &Options { threads: 2, ..Options::default() }).unwrap();
-    let names = Names { world: &world, scene: &scene };
+    let compiled = CompiledScene::new("lecture/default", scene).unwrap();
+    let settings = compiled.settings();
+    let found = find(&compiled, "green", &Options { threads: 2, ..Options::default() }).unwrap();
     let mut counts: BTreeMap<Path, u64> = BTreeMap::new();
     for number in 0..96 * 96 {
-        let trace = trace_pixel(&world, &Settings::from(&scene), number % 96, number / 96).unwrap();
+        let trace = trace_pixel(compiled.world(), &settings, number % 96, number / 96).unwrap();
         let tree = &trace.samples[0];
         let seen = (0..tree.nodes.len()).filter(|&n| tree.nodes[n].contribution != Rgb::gray(0.0));
-        let mut paths: Vec<Path> = seen.map(|n| Path::of(&names, tree, n)).filter(|path| path.end == "green").collect();
+        let mut paths: Vec<Path> =
+            seen.map(|n| Path::of(&compiled, tree, n)).filter(|path| path.end == "green").collect();
         paths.sort();
         paths.dedup();
         let shown = found.mask[number as usize] > 0.0;
@@ -211,14 +208,15 @@ fn an_object_is_found_in_all_pixels_that_show_it() {
 #[test]
 fn channels_agree_with_explanations() {
     for (name, scene) in scenes("lecture/default", 40).into_iter().chain(scenes("gallery/ice", 24)) {
-        let world = World::new(&scene).unwrap();
+        let compiled = CompiledScene::new(name.as_str(), scene).unwrap();
+        let world = compiled.world();
         let part = Crop { x: 3, y: 5, width: 20, height: 17 };
-        let (settings, options) = (Settings::from(&scene), Options { crop: Some(part), ..Options::default() });
-        let (found, met) = (channels(&world, &settings, &options).unwrap(), hits(&world, &settings, &options).unwrap());
+        let (settings, options) = (compiled.settings(), Options { crop: Some(part), ..Options::default() });
+        let (found, met) = (channels(world, &settings, &options).unwrap(), hits(world, &settings, &options).unwrap());
         let mut missed = 0;
         for i in 0..(20 * 17) as usize {
             let (x, y) = (3 + i as u32 % 20, 5 + i as u32 / 20);
-            let (explanation, _) = explain(&world, &scene, &name, x, y).unwrap();
+            let (explanation, _) = explain(&compiled, x, y).unwrap();
             let nodes = explanation.samples.iter().flat_map(|s| &s.nodes);
             assert_eq!(met[i] as usize, nodes.filter(|n| n.hit.is_some()).count(), "{name}, pixel {x},{y}");
             let object = usize::try_from(found.object[i]).ok().map(|object| world.objects[object].name.as_str());
@@ -230,16 +228,16 @@ fn channels_agree_with_explanations() {
         }
         assert!(missed < 20 * 17, "{name}: nothing is seen");
         let stop = std::sync::atomic::AtomicBool::new(true);
-        assert_eq!(channels(&world, &settings, &Options { cancel: Some(&stop), ..Options::default() }), None);
+        assert_eq!(channels(world, &settings, &Options { cancel: Some(&stop), ..Options::default() }), None);
     }
 }
 
 /// In the middle of the lecture's picture: the sentence names what is there, and the light that is not.
 #[test]
 fn the_lectures_question_is_answered() {
-    let scene = load("lecture/default", &LoadOptions::default()).unwrap().scene;
-    let world = World::new(&scene).unwrap();
-    let (found, _) = explain(&world, &scene, "lecture/default", 190, 300).unwrap();
+    let scene = load("lecture/default", &LoadOptions::default()).unwrap().into_scene();
+    let compiled = CompiledScene::new("lecture/default", scene).unwrap();
+    let (found, _) = explain(&compiled, 190, 300).unwrap();
     let first = found.samples[0].nodes[0].hit.as_ref().unwrap();
     assert_eq!((first.object.as_str(), first.eta_before, first.eta_behind), ("glass", 1.0, 2.0));
     assert_eq!(
@@ -264,10 +262,10 @@ fn lights_are_on_or_someone_blocks_them() {
     holes.render.size = [40, 40];
     let all = scenes("lecture/default", 40).into_iter().chain(scenes("gallery/window", 40));
     for (name, scene) in all.chain([("leaves".to_owned(), holes)]) {
-        let world = World::new(&scene).unwrap();
+        let compiled = CompiledScene::new(name.as_str(), scene).unwrap();
         let mut blocked = 0;
         for number in 0..1600 {
-            let (found, _) = explain(&world, &scene, &name, number % 40, number / 40).unwrap();
+            let (found, _) = explain(&compiled, number % 40, number / 40).unwrap();
             for node in found.samples.iter().flat_map(|s| &s.nodes) {
                 for light in node.local.iter().flat_map(|local| &local.lights) {
                     let dark = light.transmittance == [0.0; 3];
@@ -291,9 +289,9 @@ fn lights_are_on_or_someone_blocks_them() {
 /// The form that other programs read, version 1: these keys, and no others.
 #[test]
 fn the_json_form_has_these_keys() {
-    let scene = load("gallery/prism", &LoadOptions::default()).unwrap().scene;
-    let world = World::new(&scene).unwrap();
-    let (found, _) = explain(&world, &scene, "gallery/prism", 200, 240).unwrap();
+    let scene = load("gallery/prism", &LoadOptions::default()).unwrap().into_scene();
+    let compiled = CompiledScene::new("gallery/prism", scene).unwrap();
+    let (found, _) = explain(&compiled, 200, 240).unwrap();
     let value = serde_json::to_value(&found).unwrap();
     let keys = |value: &serde_json::Value| value.as_object().unwrap().keys().cloned().collect::<Vec<_>>().join(" ");
     assert_eq!(keys(&value), "color integrator pixel samples scene sentence size snell_ray_tree spp transfer");
@@ -344,19 +342,18 @@ material = "air"
     let source = snell_formats::Source::new("s.toml", text);
     let options = LoadOptions::default();
     let kind = load::Kind::Toml;
-    let scene = load::load_text(source, kind, std::path::Path::new("."), &options).unwrap().scene;
-    let world = World::new(&scene).unwrap();
-    let names = Names { world: &world, scene: &scene };
-    let trace = trace_pixel(&world, &Settings::from(&scene), 1, 1).unwrap();
+    let scene = load::load_text(source, kind, std::path::Path::new("."), &options).unwrap().into_scene();
+    let compiled = CompiledScene::new("inside", scene).unwrap();
+    let trace = trace_pixel(compiled.world(), &compiled.settings(), 1, 1).unwrap();
     let tree = &trace.samples[0];
     let strongest =
         (0..tree.nodes.len()).max_by(|&a, &b| tree.nodes[a].contribution.g.total_cmp(&tree.nodes[b].contribution.g));
-    let path = Path::of(&names, tree, strongest.unwrap());
+    let path = Path::of(&compiled, tree, strongest.unwrap());
     assert_eq!(path.to_string(), "camera → outer(refract) → bubble (small)(refract) → sky");
     assert_eq!(Path::parse(&path.to_string()).as_ref(), Ok(&path));
     let all: Vec<String> = (0..tree.nodes.len())
         .filter(|&n| tree.nodes[n].contribution.g > 0.0)
-        .map(|n| Path::of(&names, tree, n).to_string())
+        .map(|n| Path::of(&compiled, tree, n).to_string())
         .collect();
     // Against the outer wall from inside, behind the bubble: within the outer leg.
     assert!(

@@ -48,7 +48,7 @@ fn a_thin_face_is_a_slab_of_two() {
             let leaving = tree
                 .nodes
                 .iter()
-                .filter(|n| n.depth > 0 && n.hit.is_none() && n.ended.is_none() && (n.dir.z > 0.0) == up);
+                .filter(|n| n.depth > 0 && n.hit.is_none() && n.cutoff.is_none() && (n.dir.z > 0.0) == up);
             leaving.fold(Rgb::black(), |sum, n| sum + n.throughput)
         };
         for up in [true, false] {

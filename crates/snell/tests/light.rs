@@ -755,7 +755,7 @@ fn the_cases_of_light_are_right() {
     let Some(folder) = cases() else { return };
     for name in ["cap-holes", "corner-cube", "cyl1000", "one-plank", "silvered-plate", "wall-seen-straight-on"] {
         let path = folder.join("light").join(format!("{name}.toml"));
-        let mut scene = snell_formats::load(path.to_str().unwrap(), &LoadOptions::default()).unwrap().scene;
+        let mut scene = snell_formats::load(path.to_str().unwrap(), &LoadOptions::default()).unwrap().into_scene();
         assert_eq!(strays(&scene), None, "{name}");
         // In a white room glass cannot be seen; and what is opaque and stands out is either there or not.
         let opaque = scene.materials.values().all(|m| m.ko == Rgb::gray(1.0));

@@ -24,7 +24,7 @@ fn as_glass(folder: &Path, model: &str) -> Scene {
         mesh = [{{ file = "meshes/{model}", material = "glass" }}]
         "#
     );
-    load_text(Source::new(model, text), Kind::Toml, folder, &LoadOptions::default()).unwrap().scene
+    load_text(Source::new(model, text), Kind::Toml, folder, &LoadOptions::default()).unwrap().into_scene()
 }
 
 #[test]
@@ -55,7 +55,7 @@ fn closed_meshes_refract_and_neither_lose_nor_make_light() {
 fn the_gears_of_the_standard_databases_refract() {
     let Some(folder) = data() else { return };
     let gears = folder.join("nff/gears-2.nff");
-    let mut scene = load(gears.to_str().unwrap(), &LoadOptions::default()).unwrap().scene;
+    let mut scene = load(gears.to_str().unwrap(), &LoadOptions::default()).unwrap().into_scene();
     scene.render.size = [16, 16];
     picture(&scene, "gears-2.nff");
 }

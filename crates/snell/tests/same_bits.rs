@@ -43,7 +43,7 @@ fn nor_do_they_on_the_course_s_scenes() {
         let name = path.to_str().unwrap();
         // Some name models that are not there; what becomes of those is tested with the command.
         let Ok(loaded) = load(name, &LoadOptions::default()) else { continue };
-        matrix::all_ways(name, &at_size(loaded.scene, 12), matrix::THREADS);
+        matrix::all_ways(name, &at_size(loaded.into_scene(), 12), matrix::THREADS);
         rendered += 1;
     }
     assert!(rendered >= 35, "{rendered} of {} drivers", drivers.len());
@@ -177,7 +177,7 @@ fn the_recorded_tree_of_every_pixel_adds_up_to_the_film() {
                         Some(parent) => assert_eq!(tree.nodes[parent].depth + 1, node.depth),
                     }
                 }
-                rays += tree.nodes.iter().filter(|node| node.ended.is_none()).count() as u64;
+                rays += tree.nodes.iter().filter(|node| node.cutoff.is_none()).count() as u64;
             }
         }
         let counts = rendered.statistics.rays;

@@ -252,12 +252,12 @@ export interface LocalLight {
   /**
    * Of each light.
    */
-  lights: ExplainedLight[];
+  lights: LightAtHit[];
 }
 /**
  * What a light does there.
  */
-export interface ExplainedLight {
+export interface LightAtHit {
   /**
    * Which of the two.
    */

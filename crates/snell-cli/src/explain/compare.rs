@@ -7,7 +7,8 @@ use crate::say::{OrFail, Outcome, SCENE, tell};
 use snell::explain::text::{Text, head, mean, numbers};
 use snell::explain::{Path, by_path};
 use snell::film::Rgb;
-use snell::render::{Settings, trace_pixel};
+use snell::geometry::bvh::Quality;
+use snell::render::trace_pixel;
 use snell::scene::Scene;
 use snell_formats::recipe::Changes;
 use std::fmt::Write;
@@ -17,9 +18,9 @@ pub fn run(args: &ExplainArgs, changes: &Changes, pixel: [u32; 2]) -> Outcome {
     let mut asked = ask(args, changes)?;
     asked.warn();
     if let Some(object) = &args.without {
-        known_object(&asked.world, object)?;
-        remove(&mut asked.loaded.scene, object);
-        asked.world = asked.loaded.world().or_fail(SCENE)?;
+        known_object(asked.compiled.world(), object)?;
+        remove(asked.loaded.scene_mut(), object);
+        asked.compiled = asked.loaded.compile(&asked.recipe.name, Quality::default(), 0).or_fail(SCENE)?;
     }
     let after = asked.pixel(pixel)?;
     let [x, y] = after.pixel;
@@ -73,8 +74,8 @@ fn remove(scene: &mut Scene, object: &str) {
 }
 
 fn paths(asked: &Asked, x: u32, y: u32) -> Vec<(Path, Rgb)> {
-    trace_pixel(&asked.world, &Settings::from(&asked.loaded.scene), x, y)
-        .map_or(Vec::new(), |trace| by_path(&asked.names(), &trace))
+    let compiled = &asked.compiled;
+    trace_pixel(compiled.world(), &compiled.settings(), x, y).map_or(Vec::new(), |trace| by_path(compiled, &trace))
 }
 
 /// All paths of both, those that changed most first.

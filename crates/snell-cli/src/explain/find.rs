@@ -17,7 +17,7 @@ use std::fmt::Write;
 const LISTED: usize = 20;
 
 pub fn run(asked: &Asked, object: &str, args: &ExplainArgs) -> Outcome {
-    let world = &asked.world;
+    let world = asked.compiled.world();
     known_object(world, object)?;
     let mask =
         args.mask.as_deref().map(|file| Format::of(file).map(|format| (file, format))).transpose().or_fail(USAGE)?;
@@ -27,7 +27,7 @@ pub fn run(asked: &Asked, object: &str, args: &ExplainArgs) -> Outcome {
     let reporter = Reporter::new(ProgressKind::Auto, false, "looking");
     let update = |progress| reporter.update(progress);
     let options = Options { progress: Some(&update), crop: asked.recipe.crop, ..Options::default() };
-    let found = find(world, &asked.loaded.scene, object, &options).unwrap_or_default();
+    let found = find(&asked.compiled, object, &options).unwrap_or_default();
     reporter.finish();
     let mut text = String::new();
     if found.paths.is_empty() {

@@ -11,9 +11,10 @@ use crate::output::{self, refuse_inputs, write_text};
 use crate::recipe::{of_picture, of_scene};
 use crate::say::{self, FAILED, Failure, OrFail, Outcome, SCENE, USAGE, tell};
 use snell::explain::text::{Piece, Style, Text, text};
-use snell::explain::{Explanation, Names, explain};
+use snell::explain::{Explanation, explain};
+use snell::geometry::bvh::Quality;
 use snell::scene::{WarningCode, is_unprintable};
-use snell::world::World;
+use snell::world::{CompiledScene, World};
 use snell_formats::figure::figure;
 use snell_formats::given::Given;
 use snell_formats::load::Loaded;
@@ -29,7 +30,7 @@ struct Asked {
     /// The scene file, also where a picture remembers it.
     scene: String,
     loaded: Loaded,
-    world: World,
+    compiled: CompiledScene,
 }
 
 impl Asked {
@@ -42,18 +43,14 @@ impl Asked {
 
     /// Says what is odd about it.
     fn warn(&self) {
-        say::reports(&self.loaded.warnings_with(&self.world));
-    }
-
-    fn names(&self) -> Names<'_> {
-        Names { world: &self.world, scene: &self.loaded.scene }
+        say::reports(&self.loaded.warnings_with(self.compiled.world()));
     }
 
     /// Explains a pixel of the picture, which may be a part of the scene's.
     fn pixel(&self, [x, y]: [u32; 2]) -> Result<Explanation, Failure> {
         let [x, y] = self.in_whole([x, y])?;
-        let found = explain(&self.world, &self.loaded.scene, &self.recipe.name, x, y);
-        found.map(|(explanation, _)| explanation).ok_or_else(|| no_pixel([x, y], self.world.camera.size))
+        let found = explain(&self.compiled, x, y);
+        found.map(|(explanation, _)| explanation).ok_or_else(|| no_pixel([x, y], self.compiled.world().camera.size))
     }
 
     /// A pixel of the picture in the whole one.
@@ -108,7 +105,7 @@ pub fn run(args: &ExplainArgs) -> Outcome {
         return print(&asked, &light::text(&explanation, light));
     }
     if let Some(file) = &args.html {
-        return write(file, &page(&explanation, &asked.names()));
+        return write(file, &page(&explanation, &asked.compiled));
     }
     if let Some(file) = &args.svg {
         return write(file, &figure(&explanation));
@@ -132,15 +129,15 @@ fn ask(args: &ExplainArgs, changes: &Changes) -> Result<Asked, Failure> {
     } else {
         of_scene(&args.scene, &args.reading, changes)?
     };
-    recipe.apply(&mut loaded.scene);
+    recipe.apply(loaded.scene_mut());
     let scene = recipe.name.clone();
     if recipe.name != args.scene && args.scene != output::STANDARD {
         // What a picture remembers.
         let changes: Vec<String> = recipe.set.iter().map(|change| format!(" with {change}")).collect();
         recipe.name = format!("{}, {scene}{}", args.scene, changes.concat());
     }
-    let world = loaded.world().or_fail(SCENE)?;
-    Ok(Asked { recipe, scene, loaded, world })
+    let compiled = loaded.compile(&recipe.name, Quality::default(), 0).or_fail(SCENE)?;
+    Ok(Asked { recipe, scene, loaded, compiled })
 }
 
 /// May stdout be coloured?
@@ -162,7 +159,7 @@ fn shown(text: &Text) -> String {
 
 /// Prints an explanation. Where names hold characters that steer a terminal, its own colours go with them.
 fn print(asked: &Asked, text: &str) -> Outcome {
-    let odd = asked.world.warnings.iter().any(|warning| warning.code == WarningCode::UnprintableName);
+    let odd = asked.compiled.world().warnings.iter().any(|warning| warning.code == WarningCode::UnprintableName);
     if odd || !colored() { say::print(&plain(text)) } else { say::print(text) }
 }
 
@@ -173,7 +170,7 @@ fn known_object(world: &World, object: &str) -> Outcome {
 
 /// The same of lights.
 fn known_light(asked: &Asked, light: &str) -> Outcome {
-    let names: Vec<String> = (0..asked.loaded.scene.lights.len()).map(|number| asked.names().light(number)).collect();
+    let names: Vec<String> = (0..asked.loaded.scene.lights.len()).map(|number| asked.compiled.light(number)).collect();
     known(light, "light", &names.iter().map(String::as_str).collect::<Vec<_>>())
 }
 

@@ -13,11 +13,12 @@ use crate::{builtin, disk};
 use models::ModelReader;
 use serde::{Deserialize, Serialize};
 use snell::geometry::bvh::Quality;
-use snell::scene::{Integrator, Problem, Scene, Step, Warning};
-use snell::world::World;
+use snell::scene::{Integrator, Problem, Problems, Scene, Step, Warning};
+use snell::world::{CompiledScene, World};
 use std::collections::HashMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// A scene with more problems than this has them counted, not listed.
 pub const MOST_PROBLEMS: usize = 15;
@@ -62,7 +63,7 @@ pub struct ModelFile {
 #[derive(Clone, Debug)]
 pub struct Loaded {
     /// The scene, every mesh with its triangles.
-    pub scene: Scene,
+    pub scene: Arc<Scene>,
     /// The file that it was read from; `None` for a text that was in memory.
     pub path: Option<PathBuf>,
     /// Its text, before any change.
@@ -289,7 +290,7 @@ pub fn load_with(
     scene.render.integrator = options.integrator.unwrap_or(scene.render.integrator);
     let mut reader = ModelReader::new(folder, &options.search, dialect, scene.render.integrator, warnings);
     let mut loaded = Loaded {
-        scene,
+        scene: Arc::new(scene),
         path: None,
         source,
         kind,
@@ -320,6 +321,16 @@ impl Loaded {
         self.path.iter().map(PathBuf::as_path).chain(self.models.iter().map(|file| file.path.as_path()))
     }
 
+    /// The scene, to be changed before it is compiled.
+    pub fn scene_mut(&mut self) -> &mut Scene {
+        Arc::make_mut(&mut self.scene)
+    }
+
+    /// The scene alone.
+    pub fn into_scene(self) -> Scene {
+        Arc::unwrap_or_clone(self.scene)
+    }
+
     /// Problems of the scene, each at its place in the text.
     pub fn reports(&self, problems: &[Problem]) -> Vec<Report> {
         self.places.put_all(problems.iter().map(|p| (Report::from(p), p.place.as_slice())).collect())
@@ -333,26 +344,29 @@ impl Loaded {
         self.warnings.iter().cloned().chain(located).chain(others.iter().map(report)).collect()
     }
 
-    /// Compiles the scene.
+    /// What the scene is compiled to.
     ///
     /// # Errors
     /// What is wrong with it, each at its place; from [`MOST_PROBLEMS`] on only their number.
     pub fn world(&self) -> Result<World, Vec<Report>> {
-        self.build(Quality::default(), 0)
+        World::new(&self.scene).map_err(|problems| self.located(&problems))
     }
 
-    /// Compiles the scene with a tree of this quality, on so many threads; see [`World::build`].
+    /// The scene with what it is compiled to; see [`CompiledScene::build`].
     ///
     /// # Errors
     /// As [`world`](Self::world).
-    pub fn build(&self, quality: Quality, threads: usize) -> Result<World, Vec<Report>> {
-        World::build(&self.scene, quality, threads).map_err(|problems| {
-            let mut reports = self.reports(&problems[..problems.len().min(MOST_PROBLEMS)]);
-            if problems.len() > MOST_PROBLEMS {
-                let more = problems.len() - MOST_PROBLEMS;
-                reports.push(Report::error(format!("{more} more problems like these")));
-            }
-            reports
-        })
+    pub fn compile(&self, name: &str, quality: Quality, threads: usize) -> Result<CompiledScene, Vec<Report>> {
+        let compiled = CompiledScene::build(name, Arc::clone(&self.scene), quality, threads);
+        compiled.map_err(|problems| self.located(&problems))
+    }
+
+    fn located(&self, problems: &Problems) -> Vec<Report> {
+        let mut reports = self.reports(&problems[..problems.len().min(MOST_PROBLEMS)]);
+        if problems.len() > MOST_PROBLEMS {
+            let more = problems.len() - MOST_PROBLEMS;
+            reports.push(Report::error(format!("{more} more problems like these")));
+        }
+        reports
     }
 }

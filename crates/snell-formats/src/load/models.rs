@@ -99,7 +99,7 @@ impl<'a> ModelReader<'a> {
             let help = "`smooth_angle = 60` in its [[mesh]] smooths all edges of less than 60 degrees";
             self.warnings.push(loaded.places.put(Report::warning(WarningCode::NotDrawn, message).help(help), &place));
         }
-        loaded.scene.meshes[index].geometry = Some(Arc::clone(&read.mesh));
+        loaded.scene_mut().meshes[index].geometry = Some(Arc::clone(&read.mesh));
         Ok(Some(path))
     }
 
@@ -154,10 +154,10 @@ impl<'a> ModelReader<'a> {
             }
             added.push(name);
         }
-        make_solid(&mut loaded.scene, &added, &read.mesh);
+        make_solid(loaded.scene_mut(), &added, &read.mesh);
         for slot in slots {
             let name = self.named[&(path.to_owned(), slot.clone())].clone();
-            loaded.scene.meshes[index].materials.insert(slot, name);
+            loaded.scene_mut().meshes[index].materials.insert(slot, name);
         }
         Ok(())
     }
@@ -174,9 +174,9 @@ impl<'a> ModelReader<'a> {
 
     /// Adds a material of a model to the scene, with its texture; returns its name there.
     fn add(&mut self, loaded: &mut Loaded, path: &Path, read: &Read, found: &MtlMaterial, place: &[Step]) -> String {
-        let name = self.add_material(&mut loaded.scene, path, &found.name, found.material(self.rule));
+        let name = self.add_material(loaded.scene_mut(), path, &found.name, found.material(self.rule));
         if let Some(file) = &found.map_kd
-            && let Err(why) = self.add_texture(&mut loaded.scene, path, &name, file, &read.mesh)
+            && let Err(why) = self.add_texture(loaded.scene_mut(), path, &name, file, &read.mesh)
         {
             let message = format!("the texture `{file}` is not drawn: {why}");
             self.warnings.push(loaded.places.put(Report::warning(WarningCode::TextureIgnored, message), place));

@@ -53,12 +53,12 @@ pub(super) fn read(loaded: &mut Loaded, search: &[PathBuf], reader: &mut Picture
         if let (Some(file), None) = (texture.image.clone(), &texture.pixels) {
             let (place, srgb) = (["texture", name, "image"].map(Step::from), !texture.linear);
             let image = one(loaded, &file, srgb, &place)?;
-            loaded.scene.textures[number].pixels = Some(image);
+            loaded.scene_mut().textures[number].pixels = Some(image);
         }
     }
     if let Some(file) = loaded.scene.sky.as_ref().and_then(|sky| sky.image.clone()) {
         let image = one(loaded, &file, true, &["sky", "image"].map(Step::from))?;
-        if let Some(sky) = &mut loaded.scene.sky {
+        if let Some(sky) = &mut loaded.scene_mut().sky {
             sky.pixels = Some(image);
         }
     }

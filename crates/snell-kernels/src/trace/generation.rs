@@ -11,7 +11,7 @@ use super::propagation::Propagation;
 use super::queue::{Children, Generation, RayQueue};
 use super::shading::{LocalColors, Scenery, ShadowRays};
 use super::statistics::{Statistics, lost_units};
-use super::tree::Ended;
+use super::tree::Cutoff;
 use crate::color::Rgb;
 use crate::geometry::bvh::Packet;
 use crate::lanes::{Kernel, Lanes, Mask};
@@ -315,11 +315,11 @@ impl<'a, L: Lanes, O: Observer, I: Integrator> Tracer<'a, L, O, I> {
             let too_many = planned.get(pixel).is_some_and(|&rays| rays >= RAYS_PER_PIXEL);
             if too_deep || too_little || too_many {
                 let why = match (too_deep, too_little) {
-                    (true, _) => Ended::Depth,
-                    (false, true) => Ended::Throughput,
-                    (false, false) => Ended::Rays,
+                    (true, _) => Cutoff::Depth,
+                    (false, true) => Cutoff::Threshold,
+                    (false, false) => Cutoff::Rays,
                 };
-                self.observer.ended::<I>(self.stage, children, row, why, &self.state);
+                self.observer.cut_off::<I>(self.stage, children, row, why, &self.state);
                 let throughput = I::throughput(&carried);
                 self.lost[pixel] = self.lost[pixel] + throughput;
                 self.traced.lost[pixel] = self.traced.lost[pixel].saturating_add(lost_units(throughput));

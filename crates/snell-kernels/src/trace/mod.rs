@@ -45,4 +45,4 @@ pub use recorder::Recorder;
 pub use statistics::{LostLight, Overlap, Overlaps, RayCounts, Statistics, StrayExits};
 pub use tile::Tile;
 pub use tree::mean;
-pub use tree::{Ended, Hit, Lit, Node, PixelTrace, RayTree};
+pub use tree::{Cutoff, Hit, LightAtHit, Node, PixelTrace, RayTree};

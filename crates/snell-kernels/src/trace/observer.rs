@@ -5,7 +5,7 @@ use super::integrator::Integrator;
 use super::propagation::Propagation;
 use super::queue::{Generation, RayQueue};
 use super::shading::ShadowRays;
-use super::tree::Ended;
+use super::tree::Cutoff;
 use crate::color::Rgb;
 use crate::settings::Shadows;
 use crate::stage::{LightSource, Stage};
@@ -35,12 +35,12 @@ pub trait Observer {
         state: &StateOf<'_, I>,
     );
     /// A child of the last generation is not followed.
-    fn ended<I: Integrator>(
+    fn cut_off<I: Integrator>(
         &mut self,
         stage: &Stage,
         children: &RayQueue<I::Propagation>,
         row: usize,
-        why: Ended,
+        why: Cutoff,
         state: &StateOf<'_, I>,
     );
     /// A sample of each pixel is done; what each of them lost.
@@ -72,12 +72,12 @@ impl Observer for () {
     ) {
     }
     #[inline(always)]
-    fn ended<I: Integrator>(
+    fn cut_off<I: Integrator>(
         &mut self,
         _: &Stage,
         _: &RayQueue<I::Propagation>,
         _: usize,
-        _: Ended,
+        _: Cutoff,
         _: &StateOf<'_, I>,
     ) {
     }

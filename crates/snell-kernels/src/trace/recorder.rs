@@ -7,7 +7,7 @@ use super::observer::{Observer, StateOf};
 use super::propagation::Propagation;
 use super::queue::{Generation, RayQueue};
 use super::shading::{ShadowRays, faces, light_on};
-use super::tree::{Ended, Hit, Lit, Node, RayTree};
+use super::tree::{Cutoff, Hit, LightAtHit, Node, RayTree};
 use crate::color::Rgb;
 use crate::geometry::Vec3;
 use crate::lanes::index;
@@ -25,7 +25,7 @@ pub struct Recorder {
     /// Where the previous generation starts.
     parents: usize,
     /// What the lights do at each hit of this generation.
-    lights: Vec<Vec<Lit>>,
+    lights: Vec<Vec<LightAtHit>>,
     /// The ambient part of the local colours of this generation.
     ambient: Vec<Rgb>,
 }
@@ -62,7 +62,7 @@ impl Observer for Recorder {
             let transmittance = if lit { shadow.left(row).unwrap_or(Rgb::gray(1.0)) * falloff } else { Rgb::black() };
             let asks = facing && falloff > 0.0 && shadows != Shadows::Off;
             let between = if asks { between(stage, &batch, wi, distance, shadows) } else { Vec::new() };
-            self.lights[row].push(Lit { wi, distance, facing, transmittance, between, diffuse, highlight });
+            self.lights[row].push(LightAtHit { wi, distance, facing, transmittance, between, diffuse, highlight });
         }
     }
 
@@ -104,12 +104,12 @@ impl Observer for Recorder {
         self.depth += 1;
     }
 
-    fn ended<I: Integrator>(
+    fn cut_off<I: Integrator>(
         &mut self,
         stage: &Stage,
         children: &RayQueue<I::Propagation>,
         row: usize,
-        why: Ended,
+        why: Cutoff,
         state: &StateOf<'_, I>,
     ) {
         self.push::<I>(stage, children, row, Some(why), state);
@@ -128,7 +128,7 @@ impl Recorder {
         stage: &Stage,
         rays: &impl Generation<I::Propagation>,
         row: usize,
-        ended: Option<Ended>,
+        cutoff: Option<Cutoff>,
         state: &StateOf<'_, I>,
     ) {
         let (origin, dir) = rays.lines::<f64>(row);
@@ -145,7 +145,7 @@ impl Recorder {
             throughput: I::throughput(&rays.carried::<f64, I::Carried>(row)),
             hit: None,
             contribution: Rgb::black(),
-            ended,
+            cutoff,
             adds: false,
         });
     }

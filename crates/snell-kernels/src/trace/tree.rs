@@ -32,18 +32,18 @@ pub struct Node {
     /// What that surface, or the background, adds to the pixel.
     pub contribution: Rgb,
     /// Why it was not followed; `None` for one that was.
-    pub ended: Option<Ended>,
+    pub cutoff: Option<Cutoff>,
     /// Is it added? Not where there is nothing to be seen.
     pub(super) adds: bool,
 }
 
 /// Why a ray was not followed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ended {
+pub enum Cutoff {
     /// `max_depth` bounces were behind it.
     Depth,
     /// It carried less than `min_throughput`.
-    Throughput,
+    Threshold,
     /// The pixel had got all of its rays.
     Rays,
 }
@@ -74,12 +74,12 @@ pub struct Hit {
     /// The light that it sends out by itself, before anything weighs it.
     pub emission: Rgb,
     /// What each light does there, in the order of the scene; empty for a surface that has no colour of its own.
-    pub lights: Vec<Lit>,
+    pub lights: Vec<LightAtHit>,
 }
 
 /// What a light does at a point of a surface.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Lit {
+pub struct LightAtHit {
     /// Towards the light, of unit length, and how far it is.
     pub wi: Vec3,
     /// Infinite for a light at infinity.

@@ -1,25 +1,26 @@
 //! Why a whole picture is black.
 
-use super::{Explanation, Names, explain};
+use super::{Explanation, explain};
 use crate::color::Rgb;
 use crate::film::Film;
 use crate::geometry::Bounds;
 use crate::scene::{Warning, WarningCode};
+use crate::world::CompiledScene;
 
 /// So many columns and rows of pixels are looked at.
 const GRID: usize = 12;
 
 /// W203 for a finished film without any light, with the reason.
-pub fn black_picture(names: &Names<'_>, film: &Film) -> Option<Warning> {
+pub fn black_picture(compiled: &CompiledScene, film: &Film) -> Option<Warning> {
     let black = !film.pixels.is_empty() && film.is_finished() && film.pixels.iter().all(|&p| p == Rgb::gray(0.0));
     black.then(|| {
-        let message = format!("every pixel is black: {}", reason(names, film));
+        let message = format!("every pixel is black: {}", reason(compiled, film));
         Warning { code: WarningCode::BlackPicture, place: Vec::new(), message }
     })
 }
 
-fn reason(names: &Names<'_>, film: &Film) -> String {
-    let world = names.world;
+fn reason(compiled: &CompiledScene, film: &Film) -> String {
+    let world = compiled.world();
     if world.primitive_count() == 0 {
         return "there is nothing in the scene".to_owned();
     }
@@ -36,20 +37,20 @@ fn reason(names: &Names<'_>, film: &Film) -> String {
     let (columns, rows) = (film.width(), film.height());
     let all_over = |count: usize| (0..count).step_by(count.div_ceil(GRID)).map(|i| i as u32);
     let pixels = all_over(rows).flat_map(|y| all_over(columns).map(move |x| [film.crop.x + x, film.crop.y + y]));
-    let seen = pixels.filter_map(|[x, y]| explain(world, names.scene, "", x, y)).map(|(explanation, _)| explanation);
-    match seen.into_iter().find_map(|explanation| at_surface(names, &explanation)) {
+    let seen = pixels.filter_map(|[x, y]| explain(compiled, x, y)).map(|(explanation, _)| explanation);
+    match seen.into_iter().find_map(|explanation| at_surface(compiled, &explanation)) {
         Some(reason) => reason,
-        None if all_behind(names) => "everything lies behind the camera".to_owned(),
+        None if all_behind(compiled) => "everything lies behind the camera".to_owned(),
         None => "the camera looks past everything that is there: see `eye`, `look_at` and the angle of view".to_owned(),
     }
 }
 
 /// Why what the camera's ray meets has no colour.
-fn at_surface(names: &Names<'_>, explanation: &Explanation) -> Option<String> {
+fn at_surface(compiled: &CompiledScene, explanation: &Explanation) -> Option<String> {
     let [x, y] = explanation.pixel;
     let node = explanation.samples.first()?.nodes.first()?;
     let hit = node.hit.as_ref()?;
-    let material = names.scene.materials.get(&hit.material);
+    let material = compiled.scene().materials.get(&hit.material);
     let object = &hit.object;
     if material.is_some_and(|m| [m.ka, m.kd, m.ks].iter().all(|&c| c == Rgb::gray(0.0)) && !m.is_transparent()) {
         return Some(format!(
@@ -70,8 +71,8 @@ fn at_surface(names: &Names<'_>, explanation: &Explanation) -> Option<String> {
 }
 
 /// Does no shape begin in front of the camera?
-fn all_behind(names: &Names<'_>) -> bool {
-    let world = names.world;
+fn all_behind(compiled: &CompiledScene) -> bool {
+    let world = compiled.world();
     let [width, height] = world.camera.size;
     let (eye, ahead) = world.camera.ray(width / 2, height / 2);
     world.objects.iter().all(|object| {

@@ -1,6 +1,6 @@
 //! What the rays of each pixel met: distances, normals, objects; and how many surfaces.
 
-use super::survey::rows;
+use super::survey::{of_each_pixel, rows};
 use crate::render::{Options, PixelTracer, Settings};
 use crate::trace::PixelTrace;
 use crate::world::World;
@@ -21,7 +21,7 @@ pub struct Channels {
 pub fn channels(world: &World, settings: &Settings, options: &Options<'_>) -> Option<Channels> {
     let tracer = || PixelTracer::of_first_hits(world, settings);
     let mut channels = Channels::default();
-    for (depth, normal, object) in rows(world, tracer, options, |trace| first_hit(world, trace))? {
+    for (depth, normal, object) in rows(world.camera.size, tracer, options, |trace| first_hit(world, trace))? {
         channels.depth.push(depth);
         channels.normal.push(normal);
         channels.object.push(object);
@@ -39,13 +39,8 @@ fn first_hit(world: &World, trace: &PixelTrace) -> (f64, [f64; 3], i32) {
 
 /// How many surfaces all rays of each pixel met, those to lights apart; `None` as for [`channels`].
 pub fn hits(world: &World, settings: &Settings, options: &Options<'_>) -> Option<Vec<u32>> {
-    rows(
-        world,
-        || PixelTracer::new(world, settings),
-        options,
-        |trace| {
-            let nodes = trace.samples.iter().flat_map(|sample| &sample.nodes);
-            nodes.filter(|node| node.hit.is_some()).count() as u32
-        },
-    )
+    of_each_pixel(world, settings, options, |trace| {
+        let nodes = trace.samples.iter().flat_map(|sample| &sample.nodes);
+        nodes.filter(|node| node.hit.is_some()).count() as u32
+    })
 }

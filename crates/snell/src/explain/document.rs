@@ -3,14 +3,13 @@
 //! Colours and throughputs are linear red, green, blue; angles are in degrees; lengths in scene units.
 
 use super::angles::{Angles, angles};
-use super::{Names, bound, sentence};
+use super::{bound, sentence};
 use crate::color::Rgb;
 use crate::film::transfer::Transfer;
 use crate::render::trace_pixel;
-use crate::scene::{Integrator, Scene};
-use crate::settings::Settings;
-use crate::trace::{Ended, Hit, Node, PixelTrace, RayKind, RayTree};
-use crate::world::World;
+use crate::scene::Integrator;
+use crate::trace::{Cutoff, Hit, Node, PixelTrace, RayKind, RayTree};
+use crate::world::CompiledScene;
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -158,12 +157,12 @@ pub struct LocalLight {
     /// Of its own.
     pub emission: [f64; 3],
     /// Of each light.
-    pub lights: Vec<ExplainedLight>,
+    pub lights: Vec<LightAtHit>,
 }
 
 /// What a light does there.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
-pub struct ExplainedLight {
+pub struct LightAtHit {
     /// The light.
     pub name: String,
     /// Does the surface face it?
@@ -188,27 +187,27 @@ pub struct ExplainedLight {
 
 /// Explains a pixel, by column and row from the top left; `None` where the picture has no such pixel. The second is what it was
 /// made of.
-pub fn explain(world: &World, scene: &Scene, name: &str, x: u32, y: u32) -> Option<(Explanation, PixelTrace)> {
-    let trace = trace_pixel(world, &Settings::from(scene), x, y)?;
-    let names = Names { world, scene };
-    let bound = bound::per_throughput(world, scene.render.integrator);
-    let samples = trace.samples.iter().map(|tree| sample(&names, bound, tree)).collect();
+pub fn explain(compiled: &CompiledScene, x: u32, y: u32) -> Option<(Explanation, PixelTrace)> {
+    let (world, render) = (compiled.world(), &compiled.scene().render);
+    let trace = trace_pixel(world, &compiled.settings(), x, y)?;
+    let bound = bound::per_throughput(world, render.integrator);
+    let samples = trace.samples.iter().map(|tree| sample(compiled, bound, tree)).collect();
     let explanation = Explanation {
         snell_ray_tree: VERSION,
-        scene: name.to_owned(),
-        integrator: scene.render.integrator,
+        scene: compiled.name().to_owned(),
+        integrator: render.integrator,
         pixel: [x, y],
         size: world.camera.size,
         color: trace.radiance.to_array(),
-        transfer: scene.render.transfer,
-        spp: scene.render.spp,
-        sentence: sentence::of(&names, &trace),
+        transfer: render.transfer,
+        spp: render.spp,
+        sentence: sentence::of(compiled, &trace),
         samples,
     };
     Some((explanation, trace))
 }
 
-fn sample(names: &Names<'_>, bound: Rgb, tree: &RayTree) -> ExplainedSample {
+fn sample(compiled: &CompiledScene, bound: Rgb, tree: &RayTree) -> ExplainedSample {
     let mut subtotals: Vec<Rgb> = tree.nodes.iter().map(|node| node.contribution).collect();
     let mut has_children = vec![false; tree.nodes.len()];
     for (id, node) in tree.nodes.iter().enumerate().rev() {
@@ -219,10 +218,10 @@ fn sample(names: &Names<'_>, bound: Rgb, tree: &RayTree) -> ExplainedSample {
     }
     let nodes = tree.nodes.iter().enumerate().map(|(id, node)| {
         let size = |c: Rgb| Rgb::new(c.r.abs(), c.g.abs(), c.b.abs());
-        let ended = match (node.ended, &node.hit) {
-            (Some(Ended::Depth), _) => Some(Ending::Depth),
-            (Some(Ended::Throughput), _) => Some(Ending::Threshold),
-            (Some(Ended::Rays), _) => Some(Ending::Rays),
+        let ended = match (node.cutoff, &node.hit) {
+            (Some(Cutoff::Depth), _) => Some(Ending::Depth),
+            (Some(Cutoff::Threshold), _) => Some(Ending::Threshold),
+            (Some(Cutoff::Rays), _) => Some(Ending::Rays),
             (None, None) => Some(Ending::Missed),
             (None, Some(_)) => (!has_children[id]).then_some(Ending::Absorbed),
         };
@@ -233,16 +232,16 @@ fn sample(names: &Names<'_>, bound: Rgb, tree: &RayTree) -> ExplainedSample {
             kind: kind(node),
             origin: node.origin.into(),
             dir: node.dir.into(),
-            medium: names.medium(node.medium).to_owned(),
+            medium: compiled.medium(node.medium).to_owned(),
             eta: node.eta,
-            band_nm: node.band.map(|band| names.world.bands[band as usize].wavelength_nm),
+            band_nm: node.band.map(|band| compiled.world().bands[band as usize].wavelength_nm),
             throughput: node.throughput.to_array(),
-            hit: node.hit.as_ref().map(|hit| explained(names, node, hit)),
-            local: node.hit.as_ref().filter(|hit| hit.outer).map(|hit| local(names, hit)),
+            hit: node.hit.as_ref().map(|hit| explained(compiled, node, hit)),
+            local: node.hit.as_ref().filter(|hit| hit.outer).map(|hit| local(compiled, hit)),
             contribution: node.contribution.to_array(),
             subtotal: subtotals[id].to_array(),
             ended,
-            bound: node.ended.map(|_| (size(node.throughput) * bound).to_array()),
+            bound: node.cutoff.map(|_| (size(node.throughput) * bound).to_array()),
         }
     });
     ExplainedSample { color: tree.sum().to_array(), lost: tree.lost.to_array(), nodes: nodes.collect() }
@@ -257,10 +256,10 @@ fn kind(node: &Node) -> NodeKind {
     }
 }
 
-fn explained(names: &Names<'_>, node: &Node, hit: &Hit) -> ExplainedHit {
+fn explained(compiled: &CompiledScene, node: &Node, hit: &Hit) -> ExplainedHit {
     let Angles { before, behind, total_reflection } = angles(node.dir, hit);
     ExplainedHit {
-        object: names.object(hit.primitive).to_owned(),
+        object: compiled.object(hit.primitive).to_owned(),
         primitive: hit.primitive,
         t: hit.t,
         point: hit.point.into(),
@@ -270,24 +269,24 @@ fn explained(names: &Names<'_>, node: &Node, hit: &Hit) -> ExplainedHit {
         eta_before: hit.eta[0],
         eta_behind: hit.eta[1],
         total_reflection,
-        material: names.material(hit.material).to_owned(),
+        material: compiled.material(hit.material).to_owned(),
         throughput: hit.throughput.to_array(),
     }
 }
 
-fn local(names: &Names<'_>, hit: &Hit) -> LocalLight {
+fn local(compiled: &CompiledScene, hit: &Hit) -> LocalLight {
     let lights = hit.lights.iter().enumerate().map(|(number, lit)| {
         let dark = lit.transmittance == Rgb::gray(0.0);
         let blocker = lit.between.last().filter(|_| dark && lit.facing);
         let through = if blocker.is_some() { &lit.between[..lit.between.len() - 1] } else { &lit.between[..] };
-        let mut passed: Vec<String> = through.iter().map(|&(p, _)| names.object(p).to_owned()).collect();
+        let mut passed: Vec<String> = through.iter().map(|&(p, _)| compiled.object(p).to_owned()).collect();
         passed.dedup();
-        let source = &names.world.lights[number];
-        ExplainedLight {
-            name: names.light(number),
+        let source = &compiled.world().lights[number];
+        LightAtHit {
+            name: compiled.light(number),
             facing: lit.facing,
             transmittance: lit.transmittance.to_array(),
-            blocked_by: blocker.map(|&(primitive, _)| names.object(primitive).to_owned()),
+            blocked_by: blocker.map(|&(primitive, _)| compiled.object(primitive).to_owned()),
             block_point: blocker.map(|&(_, t)| (hit.point + lit.wi * t).into()),
             through: passed,
             diffuse: lit.diffuse.to_array(),

@@ -1,7 +1,7 @@
 //! The way of a contribution: `camera → glass(refract) → green`.
 
-use super::Names;
 use crate::trace::{Node, RayKind, RayTree};
+use crate::world::CompiledScene;
 use std::fmt;
 
 /// What a ray did at an object on its way.
@@ -41,8 +41,8 @@ pub struct PathError(pub String);
 
 impl Path {
     /// The way of a node's contribution.
-    pub fn of(names: &Names<'_>, tree: &RayTree, node: usize) -> Self {
-        let end = tree.nodes[node].hit.as_ref().map_or(SKY, |hit| names.object(hit.primitive)).to_owned();
+    pub fn of(compiled: &CompiledScene, tree: &RayTree, node: usize) -> Self {
+        let end = tree.nodes[node].hit.as_ref().map_or(SKY, |hit| compiled.object(hit.primitive)).to_owned();
         let mut way: Vec<&Node> =
             std::iter::successors(Some(&tree.nodes[node]), |n| n.parent.map(|p| &tree.nodes[p])).collect();
         way.reverse();
@@ -51,7 +51,7 @@ impl Path {
         let mut within: Vec<(&str, usize)> = Vec::new();
         for pair in way.windows(2) {
             let Some(hit) = &pair[0].hit else { continue };
-            let object = names.object(hit.primitive);
+            let object = compiled.object(hit.primitive);
             let refracts = pair[1].kind == RayKind::Refracted;
             let entered = within.iter().rposition(|(name, _)| *name == object).filter(|_| !hit.outer);
             match entered.map(|at| (at, &mut legs[within[at].1].how)) {

@@ -2,9 +2,10 @@
 
 use super::angles::angles;
 use super::path::SKY;
-use super::{How, Leg, Names, Path, by_path};
+use super::{How, Leg, Path, by_path};
 use crate::color::Rgb;
 use crate::trace::{PixelTrace, RayKind, RayTree};
+use crate::world::CompiledScene;
 
 /// Parts that are named; the rest is summed up.
 const NAMED: usize = 3;
@@ -56,8 +57,8 @@ pub fn color_name(color: Rgb) -> &'static str {
 }
 
 /// The sentence.
-pub(super) fn of(names: &Names<'_>, trace: &PixelTrace) -> String {
-    let mut parts = by_path(names, trace);
+pub(super) fn of(compiled: &CompiledScene, trace: &PixelTrace) -> String {
+    let mut parts = by_path(compiled, trace);
     // Light may be negative, in the colours of single wavelengths. Of equally strong parts the first stays the first.
     parts.sort_by(|a, b| b.1.mean().abs().total_cmp(&a.1.mean().abs()));
     let total: f64 = parts.iter().map(|(_, sum)| sum.mean().abs()).sum();
@@ -69,11 +70,11 @@ pub(super) fn of(names: &Names<'_>, trace: &PixelTrace) -> String {
         "{} because {} of this pixel is {}{}",
         capitalized(color_name(trace.radiance)),
         share(sum.mean()),
-        what(names, strongest),
-        bending(names, trace, strongest)
+        what(compiled, strongest),
+        bending(compiled, trace, strongest)
     )];
     for (path, sum) in parts.iter().take(NAMED).skip(1) {
-        clauses.push(format!("{} is {}", share(sum.mean()), what(names, path)));
+        clauses.push(format!("{} is {}", share(sum.mean()), what(compiled, path)));
     }
     if parts.len() > NAMED {
         let rest: f64 = parts[NAMED..].iter().map(|(_, sum)| sum.mean()).sum();
@@ -84,11 +85,11 @@ pub(super) fn of(names: &Names<'_>, trace: &PixelTrace) -> String {
 }
 
 /// What is seen at the end of a path, and by which way.
-fn what(names: &Names<'_>, path: &Path) -> String {
+fn what(compiled: &CompiledScene, path: &Path) -> String {
     let end = match path.end.as_str() {
         SKY => "the background".to_owned(),
-        name if path.legs.is_empty() => format!("{}`{name}` itself", kind(names, name)),
-        name => format!("{}`{name}`", kind(names, name)),
+        name if path.legs.is_empty() => format!("{}`{name}` itself", kind(compiled, name)),
+        name => format!("{}`{name}`", kind(compiled, name)),
     };
     let mut way: Vec<(String, u32)> = Vec::new();
     for Leg { object, how } in &path.legs {
@@ -114,18 +115,18 @@ fn what(names: &Names<'_>, path: &Path) -> String {
     if way.is_empty() { end } else { format!("{end}, seen {}", way.join(" and ")) }
 }
 
-fn kind(names: &Names<'_>, name: &str) -> &'static str {
-    let sphere = names.world.objects.iter().find(|object| object.name == name);
-    let is_sphere = sphere.is_some_and(|object| (object.first as usize) < names.world.spheres.len());
+fn kind(compiled: &CompiledScene, name: &str) -> &'static str {
+    let sphere = compiled.world().objects.iter().find(|object| object.name == name);
+    let is_sphere = sphere.is_some_and(|object| (object.first as usize) < compiled.world().spheres.len());
     // A name like `sphere 3` says it already.
     if is_sphere && !name.starts_with("sphere") { "the sphere " } else { "" }
 }
 
 /// How a path is bent where it first goes into something.
-fn bending(names: &Names<'_>, trace: &PixelTrace, path: &Path) -> String {
+fn bending(compiled: &CompiledScene, trace: &PixelTrace, path: &Path) -> String {
     let mut ends = trace.samples.iter().flat_map(|tree| (0..tree.nodes.len()).map(move |node| (tree, node)));
     let shows = |&(tree, node): &(&RayTree, usize)| {
-        tree.nodes[node].contribution != Rgb::gray(0.0) && Path::of(names, tree, node) == *path
+        tree.nodes[node].contribution != Rgb::gray(0.0) && Path::of(compiled, tree, node) == *path
     };
     let Some((tree, node)) = ends.find(shows) else { return String::new() };
     let way = std::iter::successors(Some(node), |&n| tree.nodes[n].parent);

@@ -1,13 +1,12 @@
 //! All pixels of a picture by their paths: one layer for each, and where an object is seen.
 
-use super::{Names, Path};
+use super::Path;
 use crate::color::Rgb;
 use crate::film::Crop;
 use crate::render::{Options, PixelTracer, Progress, Settings};
-use crate::scene::Scene;
 use crate::threads;
 use crate::trace::{PixelTrace, mean};
-use crate::world::World;
+use crate::world::{CompiledScene, World};
 use indexmap::IndexMap;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -32,15 +31,24 @@ pub struct Sightings {
     pub mask: Vec<f64>,
 }
 
-/// What each pixel's trees are made into, row by row; `None` if that was cancelled. Of the options only the tiles and the lanes
-/// do not matter.
-pub(super) fn rows<'a, T: Send>(
+/// What each pixel's trees are made into, row by row; `None` if that was cancelled, or if the world was compiled for other models
+/// of light. Of the options only the tiles and the lanes do not matter.
+pub(super) fn of_each_pixel<T: Send>(
     world: &World,
+    settings: &Settings,
+    options: &Options<'_>,
+    of: impl Fn(&PixelTrace) -> T + Sync,
+) -> Option<Vec<T>> {
+    rows(world.camera.size, || PixelTracer::new(world, settings), options, of)
+}
+
+/// The same with tracers of any kind.
+pub(super) fn rows<'a, T: Send>(
+    [width, height]: [u32; 2],
     tracer: impl Fn() -> Option<PixelTracer<'a>> + Sync,
     options: &Options<'_>,
     of: impl Fn(&PixelTrace) -> T + Sync,
 ) -> Option<Vec<T>> {
-    let [width, height] = world.camera.size;
     let crop = options.crop.unwrap_or(Crop { x: 0, y: 0, width, height });
     let total_pixels = u64::from(crop.width) * u64::from(crop.height);
     let [pixels, rays] = [AtomicU64::new(0), AtomicU64::new(0)];
@@ -65,12 +73,12 @@ pub(super) fn rows<'a, T: Send>(
 }
 
 /// The paths of a pixel, each with what it adds, by the engine's order of addition.
-pub fn by_path(names: &Names<'_>, trace: &PixelTrace) -> Vec<(Path, Rgb)> {
+pub fn by_path(compiled: &CompiledScene, trace: &PixelTrace) -> Vec<(Path, Rgb)> {
     let mut sums: IndexMap<Path, Rgb> = IndexMap::new();
     for tree in &trace.samples {
         let mut of_sample: IndexMap<Path, Rgb> = IndexMap::new();
         for (number, node) in tree.nodes.iter().enumerate().filter(|(_, n)| n.contribution != Rgb::gray(0.0)) {
-            let sum = of_sample.entry(Path::of(names, tree, number)).or_default();
+            let sum = of_sample.entry(Path::of(compiled, tree, number)).or_default();
             *sum = *sum + node.contribution;
         }
         for (path, sample) in of_sample {
@@ -83,11 +91,9 @@ pub fn by_path(names: &Names<'_>, trace: &PixelTrace) -> Vec<(Path, Rgb)> {
 }
 
 /// Splits a picture by paths: the `most` strongest of them, and the rest. `None` if cancelled.
-pub fn layers(world: &World, scene: &Scene, most: usize, options: &Options<'_>) -> Option<Layers> {
-    let names = Names { world, scene };
-    let settings = Settings::from(scene);
-    let pixels =
-        rows(world, || PixelTracer::new(world, &settings), options, |trace| (trace.radiance, by_path(&names, trace)))?;
+pub fn layers(compiled: &CompiledScene, most: usize, options: &Options<'_>) -> Option<Layers> {
+    let split = |trace: &PixelTrace| (trace.radiance, by_path(compiled, trace));
+    let pixels = of_each_pixel(compiled.world(), &compiled.settings(), options, split)?;
     let mut strength: IndexMap<&Path, f64> = IndexMap::new();
     for (path, color) in pixels.iter().flat_map(|(_, paths)| paths) {
         *strength.entry(path).or_insert(0.0) += color.mean().abs();
@@ -111,36 +117,22 @@ pub fn layers(world: &World, scene: &Scene, most: usize, options: &Options<'_>) 
 }
 
 /// What one path alone adds to each pixel, row by row. `None` if cancelled.
-pub fn only(world: &World, scene: &Scene, path: &Path, options: &Options<'_>) -> Option<Vec<Rgb>> {
-    let names = Names { world, scene };
-    let settings = Settings::from(scene);
-    rows(
-        world,
-        || PixelTracer::new(world, &settings),
-        options,
-        |trace| {
-            let all = by_path(&names, trace);
-            all.into_iter().find(|(other, _)| other == path).map_or(Rgb::gray(0.0), |(_, color)| color)
-        },
-    )
+pub fn only(compiled: &CompiledScene, path: &Path, options: &Options<'_>) -> Option<Vec<Rgb>> {
+    of_each_pixel(compiled.world(), &compiled.settings(), options, |trace| {
+        let all = by_path(compiled, trace);
+        all.into_iter().find(|(other, _)| other == path).map_or(Rgb::gray(0.0), |(_, color)| color)
+    })
 }
 
 /// Where an object is seen, directly or by others. A pixel counts once for each path that it has. `None` if cancelled.
-pub fn find(world: &World, scene: &Scene, object: &str, options: &Options<'_>) -> Option<Sightings> {
-    let names = Names { world, scene };
-    let settings = Settings::from(scene);
-    let pixels = rows(
-        world,
-        || PixelTracer::new(world, &settings),
-        options,
-        |trace| {
-            let all = by_path(&names, trace);
-            let total: f64 = all.iter().map(|(_, color)| color.mean().abs()).sum();
-            let seen: Vec<(Path, Rgb)> = all.into_iter().filter(|(path, _)| path.end == object).collect();
-            let share: f64 = seen.iter().map(|(_, color)| color.mean().abs()).sum();
-            (seen, if total > 0.0 { share / total } else { 0.0 })
-        },
-    )?;
+pub fn find(compiled: &CompiledScene, object: &str, options: &Options<'_>) -> Option<Sightings> {
+    let pixels = of_each_pixel(compiled.world(), &compiled.settings(), options, |trace| {
+        let all = by_path(compiled, trace);
+        let total: f64 = all.iter().map(|(_, color)| color.mean().abs()).sum();
+        let seen: Vec<(Path, Rgb)> = all.into_iter().filter(|(path, _)| path.end == object).collect();
+        let share: f64 = seen.iter().map(|(_, color)| color.mean().abs()).sum();
+        (seen, if total > 0.0 { share / total } else { 0.0 })
+    })?;
     let mut paths: IndexMap<Path, u64> = IndexMap::new();
     for (path, _) in pixels.iter().flat_map(|(seen, _)| seen) {
         *paths.entry(path.clone()).or_insert(0) += 1;

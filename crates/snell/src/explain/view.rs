@@ -1,8 +1,8 @@
 //! The scene as the viewer draws it: shapes, camera and lights as plain data, version 1 of its JSON form.
 
-use super::Names;
 use crate::film::transfer::Transfer;
 use crate::geometry::Bounds;
+use crate::world::CompiledScene;
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -68,8 +68,8 @@ struct ViewLight {
 
 impl ViewScene {
     /// Of a scene and its world.
-    pub fn of(names: &Names<'_>) -> Self {
-        let world = names.world;
+    pub fn of(compiled: &CompiledScene) -> Self {
+        let world = compiled.world();
         let look = |primitive: u32| {
             let m = &world.materials[world.material_of(primitive as usize) as usize];
             let own = if m.emission.mean() > 0.0 {
@@ -107,7 +107,7 @@ impl ViewScene {
             meshes.push(ViewMesh { name, vertices, faces, color, opacity });
         }
         let lights = world.lights.iter().enumerate().map(|(number, light)| ViewLight {
-            name: names.light(number),
+            name: compiled.light(number),
             position: (!light.at_infinity).then(|| light.at.into()),
             direction: light.at_infinity.then(|| light.at.into()),
             color: light.color.to_array(),
@@ -117,7 +117,7 @@ impl ViewScene {
             corners: world.camera.corners().map(Into::into),
             up: world.camera.axes[1].into(),
         };
-        let transfer = names.scene.render.transfer;
+        let transfer = compiled.scene().render.transfer;
         Self { snell_view: VERSION, transfer, spheres, meshes, camera, lights: lights.collect() }
     }
 }

@@ -1,6 +1,7 @@
 //! The compiled scene: what the kernels read ([`Stage`]), and the names and warnings that go with it. Immutable.
 
 mod builder;
+mod compiled;
 mod edit;
 mod lamp;
 mod light;
@@ -13,6 +14,7 @@ mod sphere;
 mod texture;
 mod tree;
 
+pub use compiled::CompiledScene;
 pub use snell_kernels::stage::{CameraFrame, NO_PRIMITIVE, Stage};
 
 use crate::geometry::Bounds;
