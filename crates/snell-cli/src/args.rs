@@ -228,7 +228,12 @@ pub struct ReadingArgs {
 
 impl From<&ReadingArgs> for snell_formats::LoadOptions {
     fn from(args: &ReadingArgs) -> Self {
-        Self { search: args.search.clone(), dialect: args.dialect, set: args.set.clone(), integrator: None }
+        Self {
+            search: args.search.clone(),
+            dialect: args.dialect,
+            set: args.set.clone(),
+            ..snell_formats::LoadOptions::default()
+        }
     }
 }
 

@@ -9,6 +9,7 @@ use crate::solid_text::{as_json, as_text, done_json, done_text};
 use snell::geometry::TriangleMesh;
 use snell::geometry::solid::{Options, RepairLog, Report as Findings, Step, Verdict, check, repair};
 use snell::scene::WarningCode;
+use snell_formats::files::{Disk, Files, MAX_MODEL_BYTES};
 use snell_formats::given::Given;
 use snell_formats::model::{Model, parse_model, write_obj};
 use snell_formats::{LoadOptions, Report, disk};
@@ -36,7 +37,7 @@ pub fn run(args: &CheckArgs) -> Outcome {
 }
 
 fn one_model(args: &CheckArgs, path: &Path) -> Outcome {
-    let bytes = disk::read(path, disk::MAX_MODEL_BYTES).or_fail(SCENE)?;
+    let bytes = Disk.read(path, MAX_MODEL_BYTES).or_fail(SCENE)?;
     let Model { mesh, libraries, lost_uv, mut warnings, .. } = parse_model(path, &bytes).or_fail(SCENE)?;
     drop(bytes);
     // Of no matter here.

@@ -6,6 +6,7 @@ use crate::input;
 use crate::output::{is_standard, refuse_existing, refuse_inputs};
 use crate::say::{self, FAILED, Failure, OrFail, Outcome, SCENE, USAGE};
 use snell::scene::Scene;
+use snell_formats::files::MAX_SCENE_BYTES;
 use snell_formats::load::Loaded;
 use snell_formats::scene_file::{self, Syntax};
 use snell_formats::{LoadOptions, Report, disk};
@@ -47,7 +48,7 @@ pub fn run(args: &ConvertArgs) -> Outcome {
     let heading = if syntax == Syntax::Toml { heading(&loaded) } else { String::new() };
     let Some(output) = output else {
         let text = heading + &scene_file::to_text(&loaded.scene, syntax).or_fail(FAILED)?;
-        if text.len() as u64 > disk::MAX_SCENE_BYTES {
+        if text.len() as u64 > MAX_SCENE_BYTES {
             let report =
                 Report::error(format!("this scene has {} bytes as text, which are not read again", text.len()));
             return Err(Failure::new(FAILED, report.help("with -o scene.toml large meshes go into files beside it")));

@@ -9,12 +9,13 @@ use snell::explain::text::six_digits;
 use snell::geometry::Vec3;
 use snell::scene::Scene;
 use snell::world::World;
+use snell_formats::files::{Disk, Files, MAX_SCENE_BYTES};
 use snell_formats::given::Given;
 use snell_formats::load::Loaded;
 use snell_formats::picture::{self, Picture};
 use snell_formats::recipe::Recipe;
 use snell_formats::text::decode;
-use snell_formats::{LoadOptions, Report, disk};
+use snell_formats::{LoadOptions, Report};
 use std::fmt::Write;
 use std::io::IsTerminal;
 use std::path::Path;
@@ -32,7 +33,7 @@ pub fn run(args: &InfoArgs) -> Outcome {
         if let Some(report) = given.no_scene(&args.file) {
             return Err(Failure::new(SCENE, report));
         }
-        let bytes = disk::read(Path::new(&args.file), disk::MAX_SCENE_BYTES).or_fail(SCENE)?;
+        let bytes = Disk.read(Path::new(&args.file), MAX_SCENE_BYTES).or_fail(SCENE)?;
         return print_text(&decode(&args.file, &bytes).0.text);
     }
     let loaded = input::scene(&args.file, &LoadOptions::from(&args.reading))?;

@@ -2,9 +2,10 @@
 
 use crate::output::STANDARD;
 use crate::say::{FAILED, Failure, OrFail, SCENE};
+use snell_formats::files::MAX_SCENE_BYTES;
 use snell_formats::given::{Given, given_file};
 use snell_formats::load::{Loaded, load_bytes};
-use snell_formats::{LoadOptions, Report, disk, load};
+use snell_formats::{LoadOptions, Report, load};
 use std::io::Read;
 use std::path::Path;
 
@@ -12,7 +13,7 @@ use std::path::Path;
 pub fn scene(name: &str, options: &LoadOptions) -> Result<Loaded, Failure> {
     if name == STANDARD {
         let mut bytes = Vec::new();
-        let limit = disk::MAX_SCENE_BYTES;
+        let limit = MAX_SCENE_BYTES;
         std::io::stdin()
             .lock()
             .take(limit + 1)

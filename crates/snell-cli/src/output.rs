@@ -1,7 +1,7 @@
 //! Where results go: never over what was read, never over what somebody may have worked on.
 
 use crate::say::{self, FAILED, Failure, OrFail, Outcome, USAGE};
-use snell_formats::{Report, disk};
+use snell_formats::{Report, disk, files};
 use std::path::{Path, PathBuf};
 
 /// The name of standard input and output.
@@ -56,9 +56,9 @@ pub fn write_text(output: &Path, text: &str) -> Outcome {
 }
 
 /// Writes bytes that are made as they are written to a file, or to standard output.
-pub fn write(output: &Path, content: impl FnOnce(&mut dyn disk::Out) -> std::io::Result<()>) -> Outcome {
+pub fn write(output: &Path, content: impl FnOnce(&mut dyn files::Out) -> std::io::Result<()>) -> Outcome {
     if is_standard(output) {
-        let bytes = disk::in_memory(content);
+        let bytes = files::in_memory(content);
         let bytes = bytes.map_err(|e| Report::error(format!("the result cannot be written: {e}"))).or_fail(FAILED)?;
         return say::print_bytes(&bytes);
     }

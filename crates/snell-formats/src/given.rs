@@ -3,8 +3,6 @@
 use crate::report::{Remedy, Report};
 use crate::text::{decode, looks_like_text};
 use crate::{model, picture};
-use std::fs::File;
-use std::io::Read;
 use std::path::Path;
 
 /// What somebody has given.
@@ -66,9 +64,11 @@ const ENDINGS: &[(&str, Given)] = &[
 ];
 
 /// What a file is, by its first bytes and its name; a text, if it cannot be read.
+#[cfg(feature = "disk")]
 pub fn given_file(path: &Path) -> Given {
+    use std::io::Read;
     let mut start = Vec::new();
-    let read = File::open(path).and_then(|file| file.take(START as u64).read_to_end(&mut start));
+    let read = std::fs::File::open(path).and_then(|file| file.take(START as u64).read_to_end(&mut start));
     if read.is_ok() { given(path, &start) } else { Given::Text }
 }
 

@@ -33,9 +33,9 @@
 //! Whatever is wrong with a file becomes a [`Report`] with the place, what was read, what was expected and what to do.
 
 pub mod builtin;
-pub mod disk;
 pub mod driver;
 pub mod figure;
+pub mod files;
 pub mod given;
 pub mod load;
 pub mod memory;
@@ -46,11 +46,17 @@ pub mod picture;
 pub mod recipe;
 pub mod report;
 pub mod scene_file;
+#[cfg(feature = "schemars")]
 pub mod schema;
 pub mod text;
 pub mod texture;
 mod words;
 
-pub use load::{LoadOptions, Loaded, load};
+#[cfg(feature = "disk")]
+pub use files::disk;
+#[cfg(feature = "disk")]
+pub use load::load;
+pub use load::{LoadOptions, Loaded};
 pub use report::{Report, Source};
+#[cfg(feature = "disk")]
 pub use texture::read_image;

@@ -1,9 +1,10 @@
 //! Everything that decides the bits of a picture, and that a PNG or EXR remembers.
 
 use crate::driver::Dialect;
+use crate::files::sha256;
 use crate::load::{Kind, LoadOptions, Loaded, ModelFile, load_text};
 use crate::report::{Remedy, Report, Source};
-use crate::{disk, picture, scene_file};
+use crate::scene_file;
 use serde::{Deserialize, Serialize};
 use snell::film::{Crop, Film};
 use snell::scene::{Integrator, Rounding, Scene, Shadows, Transfer};
@@ -176,8 +177,9 @@ impl Recipe {
     ///
     /// # Errors
     /// If it cannot be read, or does not say how it was made.
+    #[cfg(feature = "disk")]
     pub fn in_picture(path: &Path) -> Result<Self, Report> {
-        let remembered = picture::read(path)?.recipe.ok_or_else(|| {
+        let remembered = crate::picture::read(path)?.recipe.ok_or_else(|| {
             let report = Report::error(format!("`{}` does not say how it was made", path.display()));
             report.help("only PNG and EXR pictures made by Snell do")
         })?;
@@ -203,7 +205,7 @@ impl Recipe {
 
     /// Notes the film that came out. One that is not finished tells nothing.
     pub fn remember(&mut self, film: &Film) {
-        self.film_sha256 = film.is_finished().then(|| disk::sha256(film.bytes()));
+        self.film_sha256 = film.is_finished().then(|| sha256(film.bytes()));
     }
 
     /// Takes over what is asked to be other than it was.
@@ -292,6 +294,7 @@ impl Recipe {
             dialect,
             set: self.set.clone(),
             integrator: self.integrator,
+            ..LoadOptions::default()
         };
         let source = Source::new(self.name.as_str(), self.text.as_str());
         let loaded = load_text(source, self.kind, &self.folder, &options)?;

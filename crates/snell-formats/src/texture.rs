@@ -1,6 +1,6 @@
 //! Pictures as textures.
 
-use crate::disk;
+use crate::files::{Files, MAX_MODEL_BYTES, sha256};
 use crate::picture::{self, Picture};
 use crate::report::Report;
 use snell::film::Rgb;
@@ -16,25 +16,26 @@ use std::path::Path;
 ///
 /// # Errors
 /// When the file is not such a picture, is cut off or too large, or holds a number that is not finite as `f32`.
+#[cfg(feature = "disk")]
 pub fn read_image(path: &Path, srgb: bool) -> Result<Image, Report> {
-    read_with_hash(path, srgb).map(|(image, _)| image)
+    read_with_hash(&crate::files::Disk, path, srgb).map(|(image, _)| image)
 }
 
-/// The same, with the SHA-256 of the file.
+/// The same of any files, with the SHA-256 of the one.
 ///
 /// # Errors
-/// As [`read_image`].
-pub(crate) fn read_with_hash(path: &Path, srgb: bool) -> Result<(Image, String), Report> {
+/// As `read_image`.
+pub(crate) fn read_with_hash(files: &dyn Files, path: &Path, srgb: bool) -> Result<(Image, String), Report> {
     let advise = |report: Report| match report.help.clone() {
-        None if path.is_file() => report.help("save it again as .png, smaller if it is too large"),
-        Some(known) if path.is_file() => {
+        None if files.is_file(path) => report.help("save it again as .png, smaller if it is too large"),
+        Some(known) if files.is_file(path) => {
             let (from, to) = (path.display(), path.with_extension("png"));
             report.help(format!("{known}; convert others, for example: magick {from} {}", to.display()))
         }
         _ => report,
     };
-    let bytes = disk::read(path, disk::MAX_MODEL_BYTES).map_err(advise)?;
-    let hash = disk::sha256([&bytes]);
+    let bytes = files.read(path, MAX_MODEL_BYTES).map_err(advise)?;
+    let hash = sha256([&bytes]);
     let mut picture = picture::decode(path, &bytes, |max| {
         let linear = |code: u32, max: u32| {
             let value = f64::from(code) / f64::from(max);

@@ -6,7 +6,7 @@ use snell::film::{Crop, Film, Rgb};
 use snell::render::{LaneWidth, Options, Settings, render, render_into, trace_pixel};
 use snell::scene::{Integrator, Scene, Transform};
 use snell::world::World;
-use snell_formats::{LoadOptions, disk, load};
+use snell_formats::{LoadOptions, files, load};
 use snell_test_scenes::real_files::data;
 use snell_test_scenes::{
     all, at_size, crowd, far_away, first_light, hall_of_mirrors, hostile, instances, lecture, matrix, tiny_and_huge,
@@ -23,7 +23,7 @@ fn film(world: &World, scene: &Scene, options: &Options<'_>) -> Film {
 
 fn hash(film: &Film) -> String {
     assert!(film.is_finished());
-    disk::sha256(film.bytes())
+    files::sha256(film.bytes())
 }
 
 #[test]
@@ -78,7 +78,7 @@ fn the_tree_changes_nothing_far_from_the_origin_either() {
 #[test]
 fn the_bits_are_those_of_the_first_light() {
     let hashes = first_light().into_iter().map(|(_, scene)| hash(&picture(&scene, &Options::default())));
-    assert_eq!(disk::sha256(hashes), "ce66979c6916635c79a8b5b28afcd5a2f4247d9827a1f1a4d2a43ee1c1208102");
+    assert_eq!(files::sha256(hashes), "ce66979c6916635c79a8b5b28afcd5a2f4247d9827a1f1a4d2a43ee1c1208102");
 }
 
 #[test]

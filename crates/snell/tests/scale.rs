@@ -17,7 +17,9 @@ use snell_test_scenes::real_files::cases;
 use std::path::Path;
 
 fn read(text: &str) -> Scene {
-    load_text(Source::new("scene.toml", text), Kind::Toml, Path::new("."), &LoadOptions::default()).unwrap().into_scene()
+    load_text(Source::new("scene.toml", text), Kind::Toml, Path::new("."), &LoadOptions::default())
+        .unwrap()
+        .into_scene()
 }
 
 /// A scene of `cases/scale`, which came back empty or wrong once; `None` where these files are not.

@@ -3,7 +3,7 @@
 use snell::render::{LaneWidth, Options, Rendered, Settings, render};
 use snell::scene::Scene;
 use snell::world::World;
-use snell_formats::disk::sha256;
+use snell_formats::files::sha256;
 
 /// Threads, where there are any: alone, a few, and more than most pictures here have tiles.
 pub const THREADS: &[usize] = &[1, 2, 7];

@@ -1,15 +1,21 @@
 //! From a name to a scene with its models: the one way in for scene files, drivers and built-in scenes.
 
 mod models;
+#[cfg(feature = "disk")]
+mod named;
 mod pictures;
 
+#[cfg(feature = "disk")]
+pub use named::load;
+
 use crate::driver::{self, Dialect, Driver};
-use crate::given::{given, given_file};
+use crate::files::{self, Files};
+use crate::given::given;
+use crate::model::Finder;
 use crate::nff::{self, Nff};
-use crate::report::{Report, Source, nearest};
+use crate::report::{Report, Source};
 use crate::scene_file::{self, Syntax};
 use crate::text::decode;
-use crate::{builtin, disk};
 use models::ModelReader;
 use serde::{Deserialize, Serialize};
 use snell::geometry::bvh::Quality;
@@ -24,8 +30,10 @@ use std::sync::Arc;
 pub const MOST_PROBLEMS: usize = 15;
 
 /// How to read a scene.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct LoadOptions {
+    /// Where models and pictures lie: by default on the disk, or nowhere without the feature `disk`.
+    pub files: Arc<dyn Files>,
     /// Folders in which models are looked for first.
     pub search: Vec<PathBuf>,
     /// The year of a driver; `None` recognises it.
@@ -34,6 +42,16 @@ pub struct LoadOptions {
     pub set: Vec<String>,
     /// The model of light, if it is to be another than the scene's; some read more of the materials of models than others.
     pub integrator: Option<Integrator>,
+}
+
+impl Default for LoadOptions {
+    fn default() -> Self {
+        #[cfg(feature = "disk")]
+        let files = files::Disk;
+        #[cfg(not(feature = "disk"))]
+        let files = files::InMemory::default();
+        Self { files: Arc::new(files), search: Vec::new(), dialect: None, set: Vec::new(), integrator: None }
+    }
 }
 
 /// What a text is.
@@ -136,46 +154,10 @@ impl Places {
     }
 }
 
-/// A name with one of these is meant as a file.
-const ENDINGS: &[&str] =
-    &["txt", "toml", "json", "nff", "obj", "ply", "stl", "mtl", "png", "ppm", "exr", "npy", "glb", "gltf"];
-
-/// Reads a scene file, a driver, an NFF file, or a built-in scene.
-///
-/// # Errors
-/// Everything that keeps the file from being read.
-pub fn load(name: &str, options: &LoadOptions) -> Result<Loaded, Vec<Report>> {
-    let path = Path::new(name);
-    if path.is_dir() {
-        return Err(vec![Report::error(format!("`{name}` is a folder")).help("name the scene file in it")]);
-    }
-    if !path.exists() {
-        return match builtin::find(name) {
-            Ok(source) => load_text(source, Kind::Toml, Path::new("."), options),
-            Err(_) if path.extension().is_some_and(|e| ENDINGS.iter().any(|ending| e.eq_ignore_ascii_case(ending))) => {
-                Err(vec![no_file(path)])
-            }
-            Err(report) => {
-                let file = near_file(path).map(|near| format!("did you mean the file `{near}`?"));
-                let help: Vec<String> = file.into_iter().chain(report.help).collect();
-                let missing = Report::error(format!("there is no file and no built-in scene `{name}`"));
-                let missing = Report { remedy: report.remedy, ..missing };
-                Err(vec![if help.is_empty() { missing } else { missing.help(help.join(" ")) }])
-            }
-        };
-    }
-    let bytes =
-        disk::read(path, disk::MAX_SCENE_BYTES).map_err(|report| given_file(path).no_scene(name).unwrap_or(report))?;
-    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let mut loaded = load_bytes(name, path, &bytes, folder, options)?;
-    loaded.path = Some(path.to_owned());
-    Ok(loaded)
-}
-
 /// Reads a scene from bytes, of a kind that the ending of `path` tells, or how they start.
 ///
 /// # Errors
-/// As [`load`].
+/// Everything that keeps the scene from being read.
 pub fn load_bytes(
     name: &str,
     path: &Path,
@@ -200,25 +182,6 @@ pub fn load_bytes(
         }
         (Err(reports), warning) => Err(warning.into_iter().chain(reports).collect()),
     }
-}
-
-/// There is no such file, but perhaps one of nearly that name.
-fn no_file(path: &Path) -> Report {
-    let report = Report::error(format!("there is no file `{}`", path.display()));
-    match near_file(path) {
-        Some(near) => report.help(format!("did you mean `{near}`?")),
-        None => report,
-    }
-}
-
-/// The file of the same folder whose name is most like another.
-fn near_file(path: &Path) -> Option<String> {
-    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let names =
-        std::fs::read_dir(folder).into_iter().flatten().flatten().filter_map(|e| e.file_name().into_string().ok());
-    let (names, wanted): (Vec<String>, _) = (names.collect(), path.file_name().unwrap_or_default().to_string_lossy());
-    let near = nearest(&wanted, names.iter().map(String::as_str))?;
-    Some(path.with_file_name(near).display().to_string())
 }
 
 /// What a text is: by the ending of its name, or by how it starts.
@@ -248,7 +211,7 @@ fn is_nff(line: &str) -> bool {
 /// Reads a scene from its text. File names are relative to `folder`.
 ///
 /// # Errors
-/// As [`load`].
+/// Everything that keeps the scene from being read.
 pub fn load_text(source: Source, kind: Kind, folder: &Path, options: &LoadOptions) -> Result<Loaded, Vec<Report>> {
     load_with(source, kind, folder, options, |_| {})
 }
@@ -256,7 +219,7 @@ pub fn load_text(source: Source, kind: Kind, folder: &Path, options: &LoadOption
 /// The same for a scene of which something large is already in memory: `fill` puts it in before models are read.
 ///
 /// # Errors
-/// As [`load`].
+/// Everything that keeps the scene from being read.
 pub fn load_with(
     source: Source,
     kind: Kind,
@@ -288,7 +251,8 @@ pub fn load_with(
     }
     fill(&mut scene);
     scene.render.integrator = options.integrator.unwrap_or(scene.render.integrator);
-    let mut reader = ModelReader::new(folder, &options.search, dialect, scene.render.integrator, warnings);
+    let finder = Finder { files: &*options.files, search: &options.search };
+    let mut reader = ModelReader::new(folder, finder, dialect, scene.render.integrator, warnings);
     let mut loaded = Loaded {
         scene: Arc::new(scene),
         path: None,
@@ -309,7 +273,7 @@ pub fn load_with(
     loaded.models = reader.files;
     let mut pictures = reader.pictures;
     loaded.warnings = reader.warnings;
-    pictures::read(&mut loaded, &options.search, &mut pictures)?;
+    pictures::read(&mut loaded, finder, &mut pictures)?;
     loaded.models.extend(pictures.files);
     loaded.picture_paths = pictures.paths;
     Ok(loaded)

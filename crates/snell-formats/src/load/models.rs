@@ -2,9 +2,9 @@
 
 use super::pictures::PictureReader;
 use super::{Loaded, ModelFile};
-use crate::disk;
 use crate::driver::Dialect;
-use crate::model::{Found, Mirror, Model, MtlMaterial, MtlRule, find, find_in, parse_model, parse_mtl, places};
+use crate::files::{MAX_MODEL_BYTES, sha256};
+use crate::model::{Finder, Found, Mirror, Model, MtlMaterial, MtlRule, parse_model, parse_mtl};
 use crate::report::{Report, list};
 use crate::text::decode;
 use snell::geometry::TriangleMesh;
@@ -17,7 +17,7 @@ use std::sync::Arc;
 /// Reads models and their materials, each file once.
 pub(super) struct ModelReader<'a> {
     folder: &'a Path,
-    search: &'a [PathBuf],
+    finder: Finder<'a>,
     rule: MtlRule,
     /// Drivers make the course's pictures.
     is_course: bool,
@@ -44,14 +44,14 @@ struct Read {
 impl<'a> ModelReader<'a> {
     pub fn new(
         folder: &'a Path,
-        search: &'a [PathBuf],
+        finder: Finder<'a>,
         dialect: Option<Dialect>,
         integrator: Integrator,
         warnings: Vec<Report>,
     ) -> Self {
         Self {
             folder,
-            search,
+            finder,
             rule: rule(dialect, integrator),
             is_course: dialect.is_some(),
             models: HashMap::new(),
@@ -105,17 +105,17 @@ impl<'a> ModelReader<'a> {
 
     /// Finds a model that the scene names.
     fn find_model(&mut self, file: &str) -> Result<Found, Report> {
-        let (folder, search) = (self.folder, self.search);
-        find_in(file, self.places_of(folder), search).map_or_else(|| find(file, folder, search), Ok)
+        let (folder, finder) = (self.folder, self.finder);
+        finder.find_in(file, self.places_of(folder))
     }
 
     fn places_of(&mut self, folder: &Path) -> &[PathBuf] {
-        self.places.entry(folder.to_owned()).or_insert_with(|| places(folder))
+        self.places.entry(folder.to_owned()).or_insert_with(|| self.finder.places(folder))
     }
 
     fn read(&mut self, path: &Path) -> Result<Vec<u8>, Report> {
-        let bytes = disk::read(path, disk::MAX_MODEL_BYTES)?;
-        self.files.push(ModelFile { path: path.to_owned(), sha256: disk::sha256([&bytes]) });
+        let bytes = self.finder.files.read(path, MAX_MODEL_BYTES)?;
+        self.files.push(ModelFile { path: path.to_owned(), sha256: sha256([&bytes]) });
         Ok(bytes)
     }
 
@@ -200,10 +200,11 @@ impl<'a> ModelReader<'a> {
             return Err("the model has no texture coordinates".to_owned());
         }
         let beside = model.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        let found = find(file, beside, self.search).or_else(|_| find(file, self.folder, &[]));
+        let anywhere = Finder { search: &[], ..self.finder };
+        let found = self.finder.find(file, beside).or_else(|_| anywhere.find(file, self.folder));
         let path = found.map_err(|report| report.message)?.path;
         let name = path.display().to_string();
-        let pixels = Some(self.pictures.read(&name, &path, true).map_err(|report| report.message)?);
+        let pixels = Some(self.pictures.read(self.finder.files, &name, &path, true).map_err(|report| report.message)?);
         let texture = Texture { checker: None, image: Some(name), repeat: [1.0, 1.0], linear: false, pixels };
         scene.textures.insert(material.to_owned(), texture);
         scene.materials[material].texture = Some(material.to_owned());
@@ -234,9 +235,10 @@ impl<'a> ModelReader<'a> {
 
     fn find_library(&mut self, name: &str, model: &Path) -> Option<PathBuf> {
         let beside = model.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new(".")).to_owned();
-        let (folder, search) = (self.folder, self.search);
-        let found = find_in(name, self.places_of(&beside), search);
-        let found = found.or_else(|| find_in(name, self.places_of(folder), &[]))?;
+        let (folder, finder) = (self.folder, self.finder);
+        let anywhere = Finder { search: &[], ..finder };
+        let found = finder.look_in(name, self.places_of(&beside));
+        let found = found.or_else(|| anywhere.look_in(name, self.places_of(folder)))?;
         if !self.mtls.contains_key(&found.path) {
             self.warnings.extend(found.warning);
         }

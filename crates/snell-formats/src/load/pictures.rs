@@ -1,7 +1,8 @@
 //! The pictures that a scene and its models name: on surfaces and as the sky.
 
 use super::{Loaded, ModelFile};
-use crate::model::{find, find_in, places};
+use crate::files::Files;
+use crate::model::Finder;
 use crate::report::Report;
 use crate::texture::read_with_hash;
 use snell::scene::Step;
@@ -22,10 +23,10 @@ pub(super) struct PictureReader {
 
 impl PictureReader {
     /// A picture from a file, which the scene calls `name`.
-    pub fn read(&mut self, name: &str, path: &Path, srgb: bool) -> Result<Arc<Image>, Report> {
+    pub fn read(&mut self, files: &dyn Files, name: &str, path: &Path, srgb: bool) -> Result<Arc<Image>, Report> {
         let key = (path.to_owned(), srgb);
         if !self.images.contains_key(&key) {
-            let (image, sha256) = read_with_hash(path, srgb)?;
+            let (image, sha256) = read_with_hash(files, path, srgb)?;
             if !self.files.iter().any(|file| file.path == path) {
                 self.files.push(ModelFile { path: path.to_owned(), sha256 });
             }
@@ -37,13 +38,12 @@ impl PictureReader {
 }
 
 /// Reads those of the scene itself.
-pub(super) fn read(loaded: &mut Loaded, search: &[PathBuf], reader: &mut PictureReader) -> Result<(), Report> {
-    let places = places(&loaded.folder);
+pub(super) fn read(loaded: &mut Loaded, finder: Finder<'_>, reader: &mut PictureReader) -> Result<(), Report> {
+    let places = finder.places(&loaded.folder);
     let mut one = |loaded: &mut Loaded, file: &str, srgb: bool, place: &[Step]| {
         let put = |report: Report| if report.place.is_some() { report } else { loaded.places.put(report, place) };
-        let found =
-            find_in(file, &places, search).map_or_else(|| find(file, &loaded.folder, search), Ok).map_err(put)?;
-        let image = reader.read(file, &found.path, srgb).map_err(put)?;
+        let found = finder.find_in(file, &places).map_err(put)?;
+        let image = reader.read(finder.files, file, &found.path, srgb).map_err(put)?;
         let warning = found.warning.map(put);
         loaded.warnings.extend(warning);
         Ok::<_, Report>(image)

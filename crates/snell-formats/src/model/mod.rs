@@ -11,7 +11,7 @@ mod write;
 pub use mtl::{Mirror, MtlMaterial, MtlRule, parse_mtl};
 pub use obj::parse_obj;
 pub use ply::parse_ply;
-pub use search::{Found, find, find_in, places};
+pub(crate) use search::{Finder, Found};
 pub use stl::parse_stl;
 pub use write::{write_obj, write_ply};
 

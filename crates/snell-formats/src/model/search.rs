@@ -1,6 +1,6 @@
 //! Where a file lies that another file names.
 
-use crate::disk;
+use crate::files::{Files, MAX_MODEL_BYTES};
 use crate::report::{Remedy, Report, nearest};
 use snell::scene::WarningCode;
 use std::path::{Path, PathBuf};
@@ -20,63 +20,108 @@ pub struct Found {
     pub warning: Option<Report>,
 }
 
-/// Finds a file by the name that a scene or model in `folder` gives it: in the folders of `search`, beside it, in the
-/// folder above, in the folders that lie beside it, and in the model folders (`models`, `obj`, `mtl`, …) above. The first
-/// one found is taken, with a warning if another one is different, unless `search` asked for it. Other folders above are
-/// other people's.
-///
-/// # Errors
-/// When it is in none of them.
-pub fn find(name: &str, folder: &Path, search: &[PathBuf]) -> Result<Found, Report> {
-    let places = places(folder);
-    find_in(name, &places, search).ok_or_else(|| {
-        let looked: Vec<String> = search.iter().chain(&places).take(8).map(|p| format!("{}/", p.display())).collect();
+/// Looks for files that other files name.
+#[derive(Clone, Copy, Debug)]
+pub struct Finder<'a> {
+    /// Where all files lie.
+    pub files: &'a dyn Files,
+    /// Folders in which they are looked for first.
+    pub search: &'a [PathBuf],
+}
+
+impl Finder<'_> {
+    /// Finds a file by the name that a scene or model in `folder` gives it: in the folders of `search`, beside it, in the
+    /// folder above, in the folders that lie beside it, and in the model folders (`models`, `obj`, `mtl`, …) above. The first
+    /// one found is taken, with a warning if another one is different, unless `search` asked for it. Other folders above are
+    /// other people's.
+    ///
+    /// # Errors
+    /// When it is in none of them.
+    pub fn find(&self, name: &str, folder: &Path) -> Result<Found, Report> {
+        self.find_in(name, &self.places(folder))
+    }
+
+    /// The same, with the [`places`](Self::places) of the folder.
+    ///
+    /// # Errors
+    /// As [`find`](Self::find).
+    pub fn find_in(&self, name: &str, places: &[PathBuf]) -> Result<Found, Report> {
+        self.look_in(name, places).ok_or_else(|| self.missing(name, places))
+    }
+
+    /// The same, of what need not be there.
+    pub fn look_in(&self, name: &str, places: &[PathBuf]) -> Option<Found> {
+        // As it is, as a driver made on Windows means it, and without its folders.
+        let slashed = name.replace('\\', "/");
+        let file_name = Path::new(&slashed).file_name().map(PathBuf::from).unwrap_or_default();
+        for candidate in [Path::new(name), Path::new(&slashed), file_name.as_path()] {
+            let there = |folders: &[PathBuf]| -> Vec<PathBuf> {
+                folders.iter().map(|f| f.join(candidate)).filter(|p| self.files.is_file(p)).collect()
+            };
+            if let Some(path) = there(self.search).into_iter().next() {
+                return Some(Found { path, warning: None });
+            }
+            let found = there(places);
+            if let Some(path) = found.first() {
+                return Some(Found { path: path.clone(), warning: self.ambiguous(name, &found) });
+            }
+        }
+        None
+    }
+
+    fn missing(&self, name: &str, places: &[PathBuf]) -> Report {
+        let search = self.search;
+        let looked: Vec<String> = search.iter().chain(places).take(8).map(|p| format!("{}/", p.display())).collect();
         let more = (search.len() + places.len()).saturating_sub(looked.len());
         let more = if more > 0 { format!(" and {more} more") } else { String::new() };
-        let near = nearest_file(name, search, &places).map_or(String::new(), |near| format!("did you mean `{near}`? "));
+        let near = self.nearest_file(name, places).map_or(String::new(), |near| format!("did you mean `{near}`? "));
         let help = format!("{near}looked in {}{more}", looked.join(", "));
         Report::error(format!("the file `{name}` is not there")).help(help).remedy(Remedy::NameFolder)
-    })
-}
-
-/// Where files are looked for that a scene or model in `folder` names.
-pub fn places(folder: &Path) -> Vec<PathBuf> {
-    let parent = parent(folder);
-    let mut places: Vec<PathBuf> = vec![folder.to_owned()];
-    places.extend(parent.clone());
-    places.extend(folders_in(folder));
-    let above = parent.as_deref().map(folders_in).unwrap_or_default();
-    places.extend(above.into_iter().filter(|folder| is_model_folder(folder)));
-    places
-}
-
-/// As [`find`], with the [`places`] of the folder.
-pub fn find_in(name: &str, places: &[PathBuf], search: &[PathBuf]) -> Option<Found> {
-    // As it is, as a driver made on Windows means it, and without its folders.
-    let slashed = name.replace('\\', "/");
-    let file_name = Path::new(&slashed).file_name().map(PathBuf::from).unwrap_or_default();
-    for candidate in [Path::new(name), Path::new(&slashed), file_name.as_path()] {
-        let there = |folders: &[PathBuf]| -> Vec<PathBuf> {
-            folders.iter().map(|f| f.join(candidate)).filter(|p| p.is_file()).collect()
-        };
-        if let Some(path) = there(search).into_iter().next() {
-            return Some(Found { path, warning: None });
-        }
-        let found = there(places);
-        if let Some(path) = found.first() {
-            return Some(Found { path: path.clone(), warning: ambiguous(name, &found) });
-        }
     }
-    None
-}
 
-/// The name of a file in one of the folders that is most like another.
-fn nearest_file(name: &str, search: &[PathBuf], places: &[PathBuf]) -> Option<String> {
-    let wanted = name.rsplit(['/', '\\']).next().unwrap_or(name);
-    let files = search.iter().chain(places).filter_map(|folder| std::fs::read_dir(folder).ok());
-    let files = files.flat_map(|entries| entries.flatten().take(MOST_FILES)).filter(|entry| entry.path().is_file());
-    let names: Vec<String> = files.filter_map(|entry| entry.file_name().into_string().ok()).collect();
-    nearest(wanted, names.iter().map(String::as_str)).map(str::to_owned)
+    /// Where files are looked for that a scene or model in `folder` names.
+    pub fn places(&self, folder: &Path) -> Vec<PathBuf> {
+        let parent = parent(folder);
+        let mut places: Vec<PathBuf> = vec![folder.to_owned()];
+        places.extend(parent.clone());
+        places.extend(self.folders_in(folder));
+        let above = parent.map(|parent| self.folders_in(&parent)).unwrap_or_default();
+        places.extend(above.into_iter().filter(|folder| is_model_folder(folder)));
+        places
+    }
+
+    /// The name of a file in one of the folders that is most like another.
+    fn nearest_file(&self, name: &str, places: &[PathBuf]) -> Option<String> {
+        let wanted = name.rsplit(['/', '\\']).next().unwrap_or(name);
+        let entries = self.search.iter().chain(places).flat_map(|folder| self.files.list(folder).take(MOST_FILES));
+        let files = entries.filter(|path| self.files.is_file(path));
+        let names: Vec<String> = files.filter_map(|path| Some(path.file_name()?.to_str()?.to_owned())).collect();
+        nearest(wanted, names.iter().map(String::as_str)).map(str::to_owned)
+    }
+
+    /// The folders in a folder, those for models first, then by name.
+    fn folders_in(&self, folder: &Path) -> Vec<PathBuf> {
+        let visible = |path: &PathBuf| !lower_name(path).starts_with('.') && self.files.is_folder(path);
+        let mut folders: Vec<PathBuf> = self.files.list(folder).filter(visible).collect();
+        folders.sort_by_cached_key(|path| (!is_model_folder(path), path.clone()));
+        folders.truncate(MOST_FOLDERS);
+        folders
+    }
+
+    fn ambiguous(&self, name: &str, found: &[PathBuf]) -> Option<Report> {
+        if found.len() < 2 {
+            return None;
+        }
+        let read = |path: &PathBuf| self.files.read(path, MAX_MODEL_BYTES);
+        let first = read(found.first()?).ok()?;
+        let other = found[1..].iter().find(|path| read(path).is_ok_and(|bytes| bytes != first))?;
+        let message = format!(
+            "`{name}` lies in two places with different content: {} is taken, not {}",
+            found[0].display(),
+            other.display()
+        );
+        Some(Report::warning(WarningCode::AmbiguousFile, message).remedy(Remedy::NameFolder))
+    }
 }
 
 /// So many files of a folder are compared.
@@ -92,16 +137,6 @@ fn parent(folder: &Path) -> Option<PathBuf> {
     }
 }
 
-/// The folders in a folder, those for models first, then by name.
-fn folders_in(folder: &Path) -> Vec<PathBuf> {
-    let Ok(entries) = std::fs::read_dir(folder) else { return Vec::new() };
-    let visible = |path: &PathBuf| !lower_name(path).starts_with('.') && path.is_dir();
-    let mut folders: Vec<PathBuf> = entries.flatten().map(|e| e.path()).filter(visible).collect();
-    folders.sort_by_cached_key(|path| (!is_model_folder(path), path.clone()));
-    folders.truncate(MOST_FOLDERS);
-    folders
-}
-
 fn is_model_folder(path: &Path) -> bool {
     MODEL_FOLDERS.contains(&lower_name(path).as_str())
 }
@@ -110,23 +145,10 @@ fn lower_name(path: &Path) -> String {
     path.file_name().map(|n| n.to_string_lossy().to_lowercase()).unwrap_or_default()
 }
 
-fn ambiguous(name: &str, found: &[PathBuf]) -> Option<Report> {
-    if found.len() < 2 {
-        return None;
-    }
-    let first = disk::read(found.first()?, disk::MAX_MODEL_BYTES).ok()?;
-    let other = found[1..].iter().find(|p| disk::read(p, disk::MAX_MODEL_BYTES).is_ok_and(|b| b != first))?;
-    let message = format!(
-        "`{name}` lies in two places with different content: {} is taken, not {}",
-        found[0].display(),
-        other.display()
-    );
-    Some(Report::warning(WarningCode::AmbiguousFile, message).remedy(Remedy::NameFolder))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::files::Disk;
     use std::fs;
 
     #[test]
@@ -137,7 +159,7 @@ mod tests {
             fs::create_dir(at(folder)).unwrap();
         }
         let put = |p: &str, text: &str| fs::write(at(p), text).unwrap();
-        let find = |name: &str, search: &[PathBuf]| find(name, &at("scenes"), search);
+        let find = |name: &str, search: &[PathBuf]| Finder { files: &Disk, search }.find(name, &at("scenes"));
 
         assert_eq!(find("a.obj", &[]).unwrap_err().remedy, Some(Remedy::NameFolder));
         put("scenes/an.obj", "0");

@@ -1,7 +1,7 @@
 //! EXR: 32-bit float, linear, the data window the part that was rendered, the display window the whole picture.
 
 use super::{Picture, checked_pixels};
-use crate::disk::Out;
+use crate::files::Out;
 use exr::prelude::*;
 use snell::film::{Film, Rgb};
 use std::io::Cursor;

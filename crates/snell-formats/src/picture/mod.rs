@@ -7,7 +7,7 @@ mod ppm;
 
 pub use exr::write_layers as write_layers_to;
 
-use crate::disk::{self, Out};
+use crate::files::Out;
 use crate::report::{Report, nearest};
 use snell::film::transfer::Encoding;
 use snell::film::{Film, Rgb};
@@ -83,8 +83,9 @@ impl Format {
 ///
 /// # Errors
 /// When writing fails; what was there before stays.
+#[cfg(feature = "disk")]
 pub fn write(path: &Path, format: Format, film: &Film, encoding: Encoding, recipe: Option<&str>) -> Result<(), Report> {
-    disk::write(path, |out| write_to(out, format, film, encoding, recipe))
+    crate::disk::write(path, |out| write_to(out, format, film, encoding, recipe))
 }
 
 /// The same to anything that can be written to and gone back in.
@@ -142,7 +143,7 @@ const MAX_PIXELS: u64 = 1 << 26;
 fn fallible<T>(count: usize) -> Result<Vec<T>, String> {
     let mut memory = Vec::new();
     let bytes = count.saturating_mul(size_of::<T>());
-    memory.try_reserve_exact(count).map_err(|_| format!("{bytes} bytes of memory are not to be had"))?;
+    memory.try_reserve_exact(count).map_err(|_| format!("{bytes} bytes of memory cannot be allocated"))?;
     Ok(memory)
 }
 
@@ -150,8 +151,10 @@ fn fallible<T>(count: usize) -> Result<Vec<T>, String> {
 ///
 /// # Errors
 /// When the file is not such a picture, is cut off, or is too large.
+#[cfg(feature = "disk")]
 pub fn read(path: &Path) -> Result<Picture, Report> {
-    decode(path, &disk::read(path, disk::MAX_MODEL_BYTES)?, |_| |color| color)
+    use crate::files::{Disk, Files, MAX_MODEL_BYTES};
+    decode(path, &Disk.read(path, MAX_MODEL_BYTES)?, |_| |color| color)
 }
 
 /// The same from the bytes of a file, with pixels that become something smaller as they are read, so that a large picture is in

@@ -3,11 +3,10 @@
 use super::explain;
 use crate::report::{Report, Source, known_names};
 use indexmap::IndexMap;
-use serde::Serialize;
-use serde::de::{DeserializeOwned, IntoDeserializer};
+use serde::de::{self, DeserializeOwned, IntoDeserializer, Visitor};
+use serde::{Deserialize, Deserializer, Serialize, forward_to_deserialize_any};
 use snell::scene::{Scene, Step};
 use std::mem::take;
-use std::sync::LazyLock;
 use toml_edit::{Array, DocumentMut, Item, Key, TableLike, Value};
 
 /// Changes one value of a scene, and returns its place there.
@@ -144,9 +143,9 @@ impl Change<'_> {
 
     /// Of everything that is there once.
     fn of_settings(&self, scene: &mut Scene) -> Result<Vec<Step>, Report> {
-        let known = &*SCHEMA_KEYS;
+        let known = scene_keys();
         if !known.iter().any(|key| key == self.first) {
-            let report = unknown(self.first, self.first, known);
+            let report = unknown(self.first, self.first, &known);
             return Err(match named(scene, self.first) {
                 Some(list) => report.help(format!("did you mean `{list}.{}`?", self.first)),
                 None => report,
@@ -230,12 +229,38 @@ fn named(scene: &Scene, name: &str) -> Option<&'static str> {
     }
 }
 
-/// The keys of a scene.
-static SCHEMA_KEYS: LazyLock<Vec<String>> = LazyLock::new(|| {
-    let schema = schemars::schema_for!(Scene);
-    let properties = schema.get("properties").and_then(|p| p.as_object());
-    properties.into_iter().flat_map(|p| p.keys().cloned()).collect()
-});
+/// The keys of a scene, which it asks its deserializer for.
+fn scene_keys() -> Vec<String> {
+    struct Asked<'a>(&'a mut Vec<String>);
+
+    impl<'de> Deserializer<'de> for Asked<'_> {
+        type Error = de::value::Error;
+
+        fn deserialize_any<V: Visitor<'de>>(self, _: V) -> Result<V::Value, Self::Error> {
+            Err(de::Error::custom("there is nothing to read"))
+        }
+
+        fn deserialize_struct<V: Visitor<'de>>(
+            self,
+            _: &'static str,
+            fields: &'static [&'static str],
+            visitor: V,
+        ) -> Result<V::Value, Self::Error> {
+            self.0.extend(fields.iter().map(ToString::to_string));
+            self.deserialize_any(visitor)
+        }
+
+        forward_to_deserialize_any! {
+            bool i8 i16 i32 i64 u8 u16 u32 u64 f32 f64 char str string bytes byte_buf option unit unit_struct newtype_struct seq
+            tuple tuple_struct map enum identifier ignored_any
+        }
+    }
+
+    let mut keys = Vec::new();
+    // It fails, after it has asked.
+    let _ = Scene::deserialize(Asked(&mut keys));
+    keys
+}
 
 /// Where a value can be put.
 enum Place<'a> {

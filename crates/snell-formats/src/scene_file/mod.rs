@@ -3,11 +3,13 @@
 mod edit;
 mod layout;
 mod locate;
+#[cfg(feature = "disk")]
 mod save;
 mod write;
 
 pub use edit::{keys, set};
 pub use locate::steps_at;
+#[cfg(feature = "disk")]
 pub use save::save;
 pub use write::to_text;
 

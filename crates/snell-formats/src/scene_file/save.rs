@@ -1,7 +1,8 @@
 //! Saving a scene, with what is large in files beside it.
 
 use super::{Syntax, to_text};
-use crate::disk;
+use crate::files::disk::{self, Disk};
+use crate::files::{Files, MAX_SCENE_BYTES, sha256};
 use crate::model::write_ply;
 use crate::report::Report;
 use snell::geometry::TriangleMesh;
@@ -24,7 +25,7 @@ pub fn save(mut scene: Scene, output: &Path, syntax: Syntax, heading: &str) -> R
         if let Some(triangles) = take_triangles(mesh) {
             let mut bytes = Vec::new();
             write_ply(&triangles, &mut bytes).map_err(|e| Report::error(format!("a mesh cannot be written: {e}")))?;
-            let hash = disk::sha256([&bytes]);
+            let hash = sha256([&bytes]);
             let stem = target.file_stem().unwrap_or_default().to_string_lossy();
             let file = format!("{stem}-mesh-{}.ply", &hash[..12]);
             beside.push((target.with_file_name(&file), bytes));
@@ -33,16 +34,16 @@ pub fn save(mut scene: Scene, output: &Path, syntax: Syntax, heading: &str) -> R
         }
     }
     let text = heading.to_owned() + &to_text(&scene, syntax)?;
-    if text.len() as u64 > disk::MAX_SCENE_BYTES {
+    if text.len() as u64 > MAX_SCENE_BYTES {
         let message =
-            format!("this scene has {} bytes as text; more than {} are not read", text.len(), disk::MAX_SCENE_BYTES);
+            format!("this scene has {} bytes as text; more than {} are not read", text.len(), MAX_SCENE_BYTES);
         return Err(Report::error(message).help("put what stands in many places into one [[mesh]] with `instances`"));
     }
     for (path, bytes) in &beside {
         let there = path.symlink_metadata().is_ok();
         if !there {
             disk::write(path, |out| out.write_all(bytes))?;
-        } else if !disk::read(path, bytes.len() as u64).is_ok_and(|old| old == *bytes) {
+        } else if !Disk.read(path, bytes.len() as u64).is_ok_and(|old| old == *bytes) {
             let message = format!("`{}`, where a large mesh would go, is something else", path.display());
             return Err(Report::error(message).help("choose another name for the scene"));
         }

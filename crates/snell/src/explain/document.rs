@@ -10,17 +10,17 @@ use crate::render::trace_pixel;
 use crate::scene::Integrator;
 use crate::trace::{Cutoff, Hit, Node, PixelTrace, RayKind, RayTree};
 use crate::world::CompiledScene;
-use schemars::JsonSchema;
 use serde::Serialize;
 
 /// The version of this form.
 const VERSION: u32 = 1;
 
 /// Why a pixel has the colour it has.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct Explanation {
     /// The version of this form.
-    #[schemars(extend("const" = VERSION))]
+    #[cfg_attr(feature = "schemars", schemars(extend("const" = VERSION)))]
     pub snell_ray_tree: u32,
     /// The name of the scene.
     pub scene: String,
@@ -43,7 +43,8 @@ pub struct Explanation {
 }
 
 /// One sample: contributions add up to its colour in the order of the nodes, and samples to the pixel times `spp`.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct ExplainedSample {
     /// Its sum.
     pub color: [f64; 3],
@@ -54,7 +55,8 @@ pub struct ExplainedSample {
 }
 
 /// What kind of ray.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum NodeKind {
     /// From the eye.
@@ -68,7 +70,8 @@ pub enum NodeKind {
 }
 
 /// Why nothing follows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Ending {
     /// It met nothing.
@@ -84,7 +87,8 @@ pub enum Ending {
 }
 
 /// One ray.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct ExplainedNode {
     /// Its place in the list.
     pub id: usize,
@@ -121,7 +125,8 @@ pub struct ExplainedNode {
 }
 
 /// What a ray met.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct ExplainedHit {
     /// The object.
     pub object: String,
@@ -150,7 +155,8 @@ pub struct ExplainedHit {
 }
 
 /// The light that a surface itself sends out, before opacity and throughput weigh it.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct LocalLight {
     /// Of the light from everywhere.
     pub ambient: [f64; 3],
@@ -161,7 +167,8 @@ pub struct LocalLight {
 }
 
 /// What a light does there.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct LightAtHit {
     /// The light.
     pub name: String,

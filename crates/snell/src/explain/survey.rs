@@ -8,7 +8,6 @@ use crate::threads;
 use crate::trace::{PixelTrace, mean};
 use crate::world::{CompiledScene, World};
 use indexmap::IndexMap;
-use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// A picture in layers that add up to it.
@@ -65,10 +64,8 @@ pub(super) fn rows<'a, T: Send>(
         Some(row)
     };
     let all = crop.y..crop.y.saturating_add(crop.height);
-    let rows: Option<Vec<Vec<T>>> = threads::share(options.threads, |parallel| {
-        if parallel { all.into_par_iter().map(row).collect() } else { all.map(row).collect() }
-    });
-    let rows = rows?;
+    let rows = threads::share(options.threads, |parallel| threads::map(parallel, all, row));
+    let rows: Vec<Vec<T>> = rows.into_iter().collect::<Option<_>>()?;
     (!cancelled()).then(|| rows.into_iter().flatten().collect())
 }
 

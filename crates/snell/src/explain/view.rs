@@ -3,7 +3,6 @@
 use crate::film::transfer::Transfer;
 use crate::geometry::Bounds;
 use crate::world::CompiledScene;
-use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Triangles that are drawn; of objects beyond them, only the box.
@@ -13,10 +12,11 @@ const MOST_FACES: u32 = 40_000;
 const VERSION: u32 = 1;
 
 /// What can be seen of a scene. Lengths are in scene units, colours linear.
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub struct ViewScene {
     /// The version of this form.
-    #[schemars(extend("const" = VERSION))]
+    #[cfg_attr(feature = "schemars", schemars(extend("const" = VERSION)))]
     snell_view: u32,
     /// The curve by which colours are shown.
     transfer: Transfer,
@@ -26,7 +26,8 @@ pub struct ViewScene {
     lights: Vec<ViewLight>,
 }
 
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 struct ViewSphere {
     name: String,
     center: [f64; 3],
@@ -36,7 +37,8 @@ struct ViewSphere {
     opacity: f64,
 }
 
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 struct ViewMesh {
     name: String,
     /// x, y, z of one vertex after the other.
@@ -48,7 +50,8 @@ struct ViewMesh {
     opacity: f64,
 }
 
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 struct ViewCamera {
     eye: [f64; 3],
     /// Of the image plane: left bottom, right bottom, left top, right top.
@@ -56,7 +59,8 @@ struct ViewCamera {
     up: [f64; 3],
 }
 
-#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 struct ViewLight {
     name: String,
     /// Where it stands.

@@ -1,10 +1,10 @@
 //! From linear light to the integers of a picture file, and back.
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The curve from linear light to 8 and 16 bit.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Transfer {
     /// None: the number is the brightness, as in the lecture and the course.
@@ -15,7 +15,8 @@ pub enum Transfer {
 }
 
 /// What happens to the fraction in 8 and 16 bit.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Rounding {
     /// To the nearest.

@@ -4,7 +4,6 @@ use super::Render;
 use crate::geometry::Vec3;
 use crate::lanes::elementary::sin_cos_degrees;
 use crate::stage::CameraFrame;
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Where the image plane stands if a camera with an angle of view does not say: this share of the way from the eye to the point
@@ -16,7 +15,8 @@ const NEAR_SHARE: f64 = 0.1;
 /// `W = unit(eye − look_at)`, `U = unit(up × W)`, `V = W × U`. Pixel (i, j), row 0 on top, looks through
 /// `eye + near·W + px·U + py·V` with `px = left + i/(w−1)·(right−left)` and `py = top − j/(h−1)·(top−bottom)`.
 /// In `whitted` rays start at the eye, in the models of the lecture and the course at that point of the image plane.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Camera {
     /// Where the eye is.

@@ -3,12 +3,12 @@
 use super::shape::is_zero;
 use super::{Mesh, Transform};
 use crate::geometry::tessellate;
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// A rectangle.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Plane {
     /// Its name, for messages and explanations.
@@ -39,7 +39,8 @@ pub struct Plane {
 }
 
 /// A box between two corners.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Cuboid {
     /// Its name, for messages and explanations.
@@ -60,7 +61,8 @@ pub struct Cuboid {
 }
 
 /// A disc, or with a `transform` that stretches it an ellipse.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Disc {
     /// Its name, for messages and explanations.
@@ -91,7 +93,8 @@ pub struct Disc {
 }
 
 /// What turns around the y axis: bottles, lenses, bowls.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Lathe {
     /// Its name, for messages and explanations.

@@ -1,11 +1,11 @@
 //! Lights.
 
 use crate::color::Rgb;
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A light at a point, or at infinity in a direction. It does not fall off with distance. One with a `target` is a spot light.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Light {
     /// Its name, for messages and explanations.

@@ -5,12 +5,12 @@ use crate::color::Rgb;
 use crate::optics::absorption;
 use crate::optics::dispersion::{Dispersion, Formula, VISIBLE_NM};
 use crate::optics::glass::{self, UnknownGlass};
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
 /// What a surface does with light. What is left out is 0, but `ko` 1 (opaque), `spow` 16 and `eta` 1.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub struct Material {
     /// Share of the ambient light.

@@ -2,11 +2,11 @@
 
 use crate::film::transfer::{Encoding, Rounding, Transfer};
 use crate::settings::{Integrator, Shadows};
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// How the picture is made.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Render {
     /// The model of light. Always written: there is no silent default.

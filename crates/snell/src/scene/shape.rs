@@ -3,12 +3,12 @@
 use super::Transform;
 use crate::geometry::TriangleMesh;
 use indexmap::IndexMap;
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// A sphere.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Sphere {
     /// Its name, for messages and explanations.
@@ -37,7 +37,8 @@ impl Sphere {
 }
 
 /// A triangle mesh, from a file or written out.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Mesh {
     /// Its name, for messages and explanations.
@@ -79,12 +80,13 @@ pub struct Mesh {
     pub instances: Vec<Vec<Transform>>,
     /// The triangles themselves, once the file has been read; `None` before.
     #[serde(skip)]
-    #[schemars(skip)]
+    #[cfg_attr(feature = "schemars", schemars(skip))]
     pub geometry: Option<Arc<TriangleMesh>>,
 }
 
 /// What to do with a transparent mesh that has no inside.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum OpenMesh {
     /// Its holes are closed, as far as that needs no guessing.

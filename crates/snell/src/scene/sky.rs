@@ -2,12 +2,12 @@
 
 use crate::color::Rgb;
 use crate::texture::Image;
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// A sky around the scene: a gradient from `horizon` to `zenith`, or a picture.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Sky {
     /// The colour at the horizon. Give this or `image`.
@@ -30,7 +30,7 @@ pub struct Sky {
     pub rotate: f64,
     /// The picture itself, once the file has been read.
     #[serde(skip)]
-    #[schemars(skip)]
+    #[cfg_attr(feature = "schemars", schemars(skip))]
     pub pixels: Option<Arc<Image>>,
 }
 

@@ -2,7 +2,6 @@
 
 use crate::color::Rgb;
 use crate::texture::Image;
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -10,7 +9,8 @@ use std::sync::Arc;
 ///
 /// It lies on planes, discs and the sides of boxes once, on spheres by longitude and latitude, around what a lathe made, and on
 /// meshes by the texture coordinates of the model.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Texture {
     /// Two colours of squares. Give this or `image`.
@@ -27,7 +27,7 @@ pub struct Texture {
     pub linear: bool,
     /// The picture itself, once the file has been read.
     #[serde(skip)]
-    #[schemars(skip)]
+    #[cfg_attr(feature = "schemars", schemars(skip))]
     pub pixels: Option<Arc<Image>>,
 }
 

@@ -1,11 +1,11 @@
 //! Where shapes stand.
 
 use crate::geometry::{Affine, Vec3};
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// One step of a placement.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase", deny_unknown_fields)]
 pub enum Transform {
     /// Turns about an axis through the origin, right-handed.

@@ -12,15 +12,17 @@ const OUTSIDE: &str = "outside";
 /// A scene and the world that was made of it, which cannot be out of step.
 ///
 /// ```
-/// use snell::scene::{Camera, Render, Scene};
+/// use snell::film::Rgb;
+/// use snell::scene::{Camera, Integrator, Render, Scene};
 /// use snell::world::CompiledScene;
 ///
-/// let empty = Scene::new(Render::default(), Camera::default());
+/// let camera = Camera::new([0.0, 0.0, 10.0], [0.0; 3], [0.0, 1.0, 0.0], [-1.0, 1.0, -1.0, 1.0], -5.0);
+/// let empty = Scene::new(Render::new(Integrator::Whitted, [32, 32]), camera);
 /// let compiled = CompiledScene::new("empty", empty.clone())?;
 /// assert_eq!(compiled.world().primitive_count(), 0);
 ///
 /// // What moves while someone looks on: the geometry and its tree are kept.
-/// let brighter = compiled.edited(Scene { ambient: snell::film::Rgb::gray(0.5), ..empty })?;
+/// let brighter = compiled.edited(Scene { ambient: Rgb::gray(0.5), ..empty })?;
 /// assert_eq!(brighter.world().ambient.r, 0.5);
 /// # Ok::<(), snell::scene::Problems>(())
 /// ```

@@ -5,13 +5,13 @@ use super::builder::Builder;
 use super::solid::MeshSolids;
 use crate::geometry::area::largest_angle;
 use crate::geometry::mesh::{MAX_SMOOTHED_VALENCE, NormalWeights};
-use crate::geometry::shape::{self, Cuboid, Disc, Rectangle};
+use crate::geometry::shape::{self, Cuboid, Disc, Rectangle, Shapes, Sphere};
 use crate::geometry::solid::{Options, repair, structure};
 use crate::geometry::{Affine, Bounds, TriangleMesh, Vec3, triangle};
 use crate::scene::{
     Integrator, LARGEST_NUMBER, Mesh, OpenMesh, Problem, Remedy, Step, Warning, WarningCode, whole_map,
 };
-use crate::stage::{FLAT, NO_PRIMITIVE, NO_SOLID, Solid, Surfaces};
+use crate::stage::{CompiledMaterial, FLAT, NO_PRIMITIVE, NO_SOLID, Solid, Surfaces};
 use std::sync::Arc;
 
 /// Triangles on their way into a tree, each with its largest angle first ([`area`](crate::geometry::area)).
@@ -45,6 +45,20 @@ pub(super) struct Parts {
     pub solids: Vec<Vec<Solid>>,
 }
 
+impl Parts {
+    /// All shapes, without the meshes that are to be placed.
+    pub fn shapes<'a>(&'a self, spheres: &'a [Sphere]) -> Shapes<'a> {
+        Shapes {
+            spheres,
+            triangles: self.triangles.list(),
+            rectangles: &self.rectangles,
+            cuboids: &self.cuboids,
+            discs: &self.discs,
+            instances: &[],
+        }
+    }
+}
+
 /// What is on both sides of the transparent faces of a mesh.
 enum Sides {
     /// Nothing goes through any of them.
@@ -69,6 +83,63 @@ impl Sides {
     }
 }
 
+/// A mesh that is ready to stand among the others.
+struct Faces<'a, M> {
+    mesh: &'a TriangleMesh,
+    material_of: M,
+    sides: &'a Sides,
+    /// What the numbers of its solids begin with.
+    first_solid: u32,
+    /// Of smooth surfaces.
+    corner_normals: Option<Vec<[Vec3; 3]>>,
+    textured: bool,
+}
+
+impl<M: Fn(usize, &TriangleMesh) -> u32> Faces<'_, M> {
+    /// Appends the faces. Returns how many of them have no area and are left out, and which materials the others have.
+    fn append(
+        self,
+        materials: &[CompiledMaterial],
+        surfaces: &mut Surfaces,
+        triangles: &mut Triangles,
+    ) -> (usize, Vec<bool>) {
+        let base = triangles.vertices.len() as u32;
+        let (mut without_area, mut used) = (0, vec![false; materials.len()]);
+        for (f, face) in self.mesh.faces.iter().enumerate() {
+            let corners = self.mesh.corners(f);
+            if !triangle::normal(corners).is_finite() {
+                without_area += 1;
+                continue;
+            }
+            let first_corner = largest_angle(corners);
+            let material = (self.material_of)(f, self.mesh);
+            used[material as usize] = true;
+            let row = surfaces.material_of.len();
+            triangles.faces.push(turned(*face, first_corner).map(|v| v + base));
+            surfaces.material_of.push(material);
+            if materials[material as usize].is_transparent() {
+                let [behind, front] = self.sides.of(f, self.first_solid);
+                put_sparse(&mut surfaces.interior_of, row, behind, NO_SOLID);
+                put_sparse(&mut surfaces.exterior_of, row, front, NO_SOLID);
+            }
+            let normals = self.corner_normals.as_ref().map(|normals| turned(normals[f], first_corner));
+            let at = normals.map_or(FLAT, |_| surfaces.corner_normals.len() as u32);
+            surfaces.corner_normals_of.push(at);
+            surfaces.corner_normals.extend(normals);
+            if self.textured {
+                put_sparse(&mut surfaces.corner_uvs_of, row, surfaces.corner_uvs.len() as u32, FLAT);
+                surfaces.corner_uvs.push(turned(self.mesh.corner_uvs(f).unwrap_or_default(), first_corner));
+            }
+        }
+        triangles.vertices.extend(&self.mesh.vertices);
+        (without_area, used)
+    }
+}
+
+fn place_of(which: Which, key: &'static str) -> Vec<Step> {
+    vec![Step::from(which.0), Step::from(which.1), Step::from(key)]
+}
+
 /// What is wrong with a shape, without its place.
 pub(super) fn refusal(message: String, help: &str, remedy: Option<Remedy>) -> Problem {
     Problem { place: Vec::new(), message, help: Some(help.to_owned()), remedy }
@@ -81,8 +152,6 @@ fn normal_weights(has_media: bool) -> NormalWeights {
 
 impl Builder<'_> {
     pub(super) fn add_mesh(&mut self, which: Which, mesh: &Mesh) -> Result<(), Problem> {
-        let place = |key: &str| vec![Step::from(which.0), Step::from(which.1), Step::from(key)];
-        let problem = |key: &str, message: String| Problem { place: place(key), message, help: None, remedy: None };
         if mesh.inside.is_some() && !mesh.instances.is_empty() {
             // Media are what they are everywhere, unlike the solids of a model, which are others in each place.
             for steps in &mesh.instances {
@@ -92,6 +161,58 @@ impl Builder<'_> {
             }
             return Ok(());
         }
+        let (placed, slots) = self.placed(which, mesh)?;
+        let name = mesh.name.clone().or_else(|| mesh.file.clone());
+        let name = name.unwrap_or_else(|| format!("{} {}", which.0, which.1 + 1));
+        let material_of = |face: usize, mesh_of: &TriangleMesh| match mesh_of.face_slots.get(face) {
+            Some(&slot) if mesh.material.is_none() => slots[slot as usize],
+            _ => slots[0],
+        };
+        // Where a person would look for what is wrong with the mesh.
+        let main_place = place_of(which, if mesh.file.is_some() { "file" } else { "material" });
+        let refused = |problem| Problem { place: main_place.clone(), ..problem };
+        let open = place_of(which, "open");
+        let (placed, sides) = self.sides_of(&name, &open, mesh, placed, &material_of).map_err(refused)?;
+        let textured = (0..placed.faces.len()).any(|f| self.stage.texture_of(material_of(f, &placed)).is_some());
+        if textured && placed.face_uvs.is_empty() && !placed.faces.is_empty() {
+            let help = "give it a material without texture, or a model file with texture coordinates";
+            return Err(refused(refusal(format!("`{name}` has no texture coordinates for its texture"), help, None)));
+        }
+        let weights = normal_weights(self.stage.has_media);
+        let corner_normals = (mesh.smooth_angle > 0.0).then(|| placed.smooth_normals(mesh.smooth_angle, weights));
+        let is_model = !mesh.instances.is_empty();
+        // Solids of a model are numbered from 0, and get their own in each place.
+        let first_solid = if is_model { 0 } else { self.stage.solids.len() as u32 };
+        let faces = Faces { mesh: &placed, material_of, sides: &sides, first_solid, corner_normals, textured };
+        let (without_area, used) = if is_model {
+            let (mut surfaces, mut triangles) = (Surfaces::default(), Triangles::default());
+            let added = faces.append(&self.stage.materials, &mut surfaces, &mut triangles);
+            self.models.push(surfaces);
+            self.parts.models.push(triangles);
+            let maps = mesh.instances.iter().map(|steps| whole_map(steps));
+            let model = self.models.len() - 1;
+            self.parts.placed.extend(maps.map(|map| (which, name.clone(), model, map)));
+            added
+        } else {
+            let first = self.surfaces.material_of.len() as u32;
+            let added = faces.append(&self.stage.materials, &mut self.surfaces, &mut self.parts.triangles);
+            let count = self.surfaces.material_of.len() as u32 - first;
+            Arc::make_mut(&mut self.objects).push(Object { name: name.clone(), first, count });
+            added
+        };
+        let solids = if let Sides::Solids(solids) = sides { solids.solids } else { Vec::new() };
+        if is_model {
+            self.parts.solids.push(solids);
+        } else {
+            self.stage.solids.extend(solids);
+        }
+        self.warn_about(&name, &main_place, &placed, mesh, without_area, &used);
+        Ok(())
+    }
+
+    /// The triangles of a mesh where its transform puts them, and the materials of its slots.
+    fn placed(&self, which: Which, mesh: &Mesh) -> Result<(TriangleMesh, Vec<u32>), Problem> {
+        let problem = |key, message| Problem { place: place_of(which, key), message, help: None, remedy: None };
         let written;
         let source = match (&mesh.geometry, &mesh.file) {
             (Some(geometry), _) => geometry.as_ref(),
@@ -110,80 +231,8 @@ impl Builder<'_> {
             let message = format!("a vertex ends up at ({}, {}, {}), beyond 1e15", v.x, v.y, v.z);
             return Err(problem("transform", message));
         }
-        let slots = self.slot_materials(mesh, source).map_err(|m| problem("materials", m))?;
-
-        let name = mesh.name.clone().or_else(|| mesh.file.clone());
-        let name = name.unwrap_or_else(|| format!("{} {}", which.0, which.1 + 1));
-        let material_of = |face: usize, mesh_of: &TriangleMesh| match mesh_of.face_slots.get(face) {
-            Some(&slot) if mesh.material.is_none() => slots[slot as usize],
-            _ => slots[0],
-        };
-        // Where a person would look for what is wrong with the mesh.
-        let main_key = if mesh.file.is_some() { "file" } else { "material" };
-        let refused = |problem| Problem { place: place(main_key), ..problem };
-        let (placed, sides) = self.sides_of(&name, &place("open"), mesh, placed, &material_of).map_err(refused)?;
-        let textured = (0..placed.faces.len()).any(|f| self.stage.texture_of(material_of(f, &placed)).is_some());
-        if textured && placed.face_uvs.is_empty() && !placed.faces.is_empty() {
-            let help = "give it a material without texture, or a model file with texture coordinates";
-            return Err(refused(refusal(format!("`{name}` has no texture coordinates for its texture"), help, None)));
-        }
-        let weights = normal_weights(self.stage.has_media);
-        let corner_normals = (mesh.smooth_angle > 0.0).then(|| placed.smooth_normals(mesh.smooth_angle, weights));
-        let is_model = !mesh.instances.is_empty();
-        let (surfaces, triangles) = if is_model {
-            self.models.push(Surfaces::default());
-            self.parts.models.push(Triangles::default());
-            (self.models.last_mut(), self.parts.models.last_mut())
-        } else {
-            (Some(&mut self.surfaces), Some(&mut self.parts.triangles))
-        };
-        let (Some(surfaces), Some(triangles)) = (surfaces, triangles) else { return Ok(()) };
-        // Solids of a model are numbered from 0, and get their own in each place.
-        let first_solid = if is_model { 0 } else { self.stage.solids.len() as u32 };
-        let (first, base) = (surfaces.material_of.len() as u32, triangles.vertices.len() as u32);
-        let mut without_area = 0usize;
-        let mut used = vec![false; self.stage.materials.len()];
-        for (f, face) in placed.faces.iter().enumerate() {
-            if !triangle::normal(placed.corners(f)).is_finite() {
-                without_area += 1;
-                continue;
-            }
-            let first_corner = largest_angle(placed.corners(f));
-            let material = material_of(f, &placed);
-            used[material as usize] = true;
-            triangles.faces.push(turned(*face, first_corner).map(|v| v + base));
-            surfaces.material_of.push(material);
-            let [behind, front] = if self.stage.materials[material as usize].is_transparent() {
-                sides.of(f, first_solid)
-            } else {
-                [NO_SOLID; 2]
-            };
-            let row = surfaces.material_of.len() - 1;
-            put_sparse(&mut surfaces.interior_of, row, behind, NO_SOLID);
-            put_sparse(&mut surfaces.exterior_of, row, front, NO_SOLID);
-            let normals = corner_normals.as_ref().map(|normals| turned(normals[f], first_corner));
-            let at = normals.map_or(FLAT, |_| surfaces.corner_normals.len() as u32);
-            surfaces.corner_normals_of.push(at);
-            surfaces.corner_normals.extend(normals);
-            if textured {
-                put_sparse(&mut surfaces.corner_uvs_of, row, surfaces.corner_uvs.len() as u32, FLAT);
-                surfaces.corner_uvs.push(turned(placed.corner_uvs(f).unwrap_or_default(), first_corner));
-            }
-        }
-        triangles.vertices.extend(&placed.vertices);
-        let solids = if let Sides::Solids(solids) = sides { solids.solids } else { Vec::new() };
-        if is_model {
-            self.parts.solids.push(solids);
-            let model = self.models.len() - 1;
-            let maps = mesh.instances.iter().map(|steps| whole_map(steps));
-            self.parts.placed.extend(maps.map(|map| (which, name.clone(), model, map)));
-        } else {
-            self.stage.solids.extend(solids);
-            let count = self.surfaces.material_of.len() as u32 - first;
-            Arc::make_mut(&mut self.objects).push(Object { name: name.clone(), first, count });
-        }
-        self.warn_about(&name, &place(main_key), &placed, mesh, without_area, &used);
-        Ok(())
+        let slots = self.slot_materials(mesh, source).map_err(|message| problem("materials", message))?;
+        Ok((placed, slots))
     }
 
     /// The material of each slot of a model; at least one.

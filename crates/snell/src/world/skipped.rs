@@ -16,6 +16,9 @@ impl World {
             return None;
         }
         let skipped = Pyramid::of(&self.camera, if spp > 1 { JITTER } else { 0.0 });
+        if skipped.leaves_out(&self.ground.extent.corners()) {
+            return None;
+        }
         let mut names: Vec<&str> = Vec::new();
         for object in self.objects.iter().filter(|object| object.count > 0) {
             let first = object.first as usize;

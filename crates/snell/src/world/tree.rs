@@ -2,10 +2,10 @@
 
 use super::Object;
 use super::builder::Builder;
-use super::mesh::{Triangles, Which};
+use super::mesh::{Parts, Triangles, Which};
 use super::solid::{find_touching, placed};
-use crate::geometry::Bounds;
 use crate::geometry::bvh::{self, Instance, MARGIN, Quality, Shapes};
+use crate::geometry::{Affine, Bounds};
 use crate::scene::{LARGEST_NUMBER, Problem, Step};
 use crate::stage::{CameraFrame, NO_PRIMITIVE, Placement};
 use std::sync::Arc;
@@ -32,58 +32,73 @@ pub(super) fn measure(extent: Bounds, camera: &CameraFrame) -> (Bounds, f64) {
     (everything, MARGIN * (everything.diagonal() + everything.farthest()))
 }
 
+/// What may meet a model, in its own space.
+struct Met {
+    /// The model, and where rays start that may meet it.
+    seen: Bounds,
+    /// The most that a way into this space stretches.
+    norm: f64,
+}
+
+fn problem((kind, index): Which, message: String) -> Problem {
+    let place = vec![Step::from(kind), Step::from(index), Step::from("instances")];
+    Problem { place, message, help: None, remedy: None }
+}
+
 impl Builder<'_> {
     pub(super) fn build_tree(&mut self, quality: Quality, threads: usize) -> Result<(), Problem> {
-        let problem = |(kind, index): Which, message: String| {
-            let place = vec![Step::from(kind), Step::from(index), Step::from("instances")];
-            Problem { place, message, help: None, remedy: None }
-        };
-        let shapes = Shapes {
-            spheres: &self.stage.spheres,
-            triangles: self.parts.triangles.list(),
-            rectangles: &self.parts.rectangles,
-            cuboids: &self.parts.cuboids,
-            discs: &self.parts.discs,
-            instances: &[],
-        };
-        if shapes.count() + self.parts.placed.len() >= 1 << 31 {
+        let parts = std::mem::take(&mut self.parts);
+        let shapes = parts.shapes(&self.stage.spheres);
+        if shapes.count() + parts.placed.len() >= 1 << 31 {
             let message = "more than 2 billion shapes and triangles".to_owned();
             return Err(Problem { place: vec![Step::from("mesh")], message, help: None, remedy: None });
         }
-        let mut extent = (0..shapes.count()).map(|i| shapes.bounds(i)).fold(Bounds::EMPTY, Bounds::union);
-        let mut boxes = Vec::with_capacity(self.parts.placed.len());
-        for (which, name, model, map) in &self.parts.placed {
-            let Triangles { vertices, faces } = &self.parts.models[*model];
-            // Vertices of no face may lie anywhere, and must not make the boxes of others larger.
-            let vertices = if faces.is_empty() { &[] } else { vertices.as_slice() };
-            let bounds = Bounds::of(vertices.iter().map(|&v| map.apply(v)));
-            if !(bounds.farthest() <= LARGEST_NUMBER || faces.is_empty()) {
-                return Err(problem(*which, format!("an instance of `{name}` reaches beyond 1e15")));
-            }
-            extent = extent.union(bounds);
-            boxes.push(bounds);
-        }
+        let boxes = boxes_of_instances(&parts)?;
+        let extent = boxes.iter().fold(shapes.extent(), |all, bounds| all.union(*bounds));
         let (everything, tolerance) = measure(extent, &self.stage.camera);
+        (self.stage.reach, self.stage.coincidence_tolerance) = (everything.diagonal(), tolerance);
+        let (instances, met) = self.place_instances(&parts, boxes, everything)?;
+        self.stage.exit_tolerance = 0.5 * self.stage.coincidence_tolerance;
+        let models = parts.models.iter().zip(met).map(|(model, Met { seen, norm })| {
+            let shapes = Shapes { triangles: model.list(), ..Shapes::default() };
+            let margin = (MARGIN * (seen.diagonal() + seen.farthest())).max(norm * self.stage.coincidence_tolerance);
+            bvh::build(&shapes, vec![], margin, quality, threads)
+        });
+        let models = models.collect();
+        let shapes = parts.shapes(&self.stage.spheres);
+        let opaque = Arc::new(self.boxes_without_solids(&shapes, &instances));
+        let shapes = Shapes { instances: &instances, ..shapes };
+        self.ground = Ground { extent, margin: ROOM * self.stage.coincidence_tolerance, opaque };
+        self.stage.tree = Arc::new(bvh::build(&shapes, models, self.ground.margin, quality, threads));
+        find_touching(&mut self.stage, &self.ground.opaque);
+        self.find_primitives();
+        Ok(())
+    }
+
+    /// Puts the models in their places, each a placement with solids and an object of its own; with what may meet each model.
+    fn place_instances(
+        &mut self,
+        parts: &Parts,
+        boxes: Vec<Bounds>,
+        everything: Bounds,
+    ) -> Result<(Vec<Instance>, Vec<Met>), Problem> {
         let (reach, farthest) = (everything.diagonal(), everything.farthest());
-        (self.stage.reach, self.stage.coincidence_tolerance) = (reach, tolerance);
-        // In the space of a model rays come from everywhere that any of its instances sees, and start a little behind.
-        let mut seen: Vec<Bounds> = self.parts.models.iter().map(|m| Bounds::of(m.vertices.iter().copied())).collect();
-        let mut norms = vec![0.0; self.parts.models.len()];
-        let mut instances = Vec::with_capacity(self.parts.placed.len());
+        // Rays come from everywhere that any of the instances sees, and start a little behind.
+        let alone = |model: &Triangles| Met { seen: Bounds::of(model.vertices.iter().copied()), norm: 0.0 };
+        let mut met: Vec<Met> = parts.models.iter().map(alone).collect();
+        let mut instances = Vec::with_capacity(parts.placed.len());
         let mut first = self.stage.surfaces.material_of.len();
-        for ((which, name, model, map), bounds) in self.parts.placed.iter().zip(boxes) {
+        for ((which, name, model, map), bounds) in parts.placed.iter().zip(boxes) {
             let instance = Instance::new(*model, map, first as u32, bounds, reach, farthest);
             let flat = || problem(*which, format!("an instance of `{name}` is scaled by 0"));
             let instance = instance.ok_or_else(flat)?;
             self.stage.coincidence_tolerance = self.stage.coincidence_tolerance.max(instance.off);
-            norms[*model] = instance.to_model.norm().max(norms[*model]);
-            seen[*model] = seen[*model].union(Bounds::of(everything.corners().map(|c| instance.to_model.apply(c))));
+            let Met { seen, norm } = &mut met[*model];
+            *norm = instance.to_model.norm().max(*norm);
+            *seen = seen.union(Bounds::of(everything.corners().map(|c| instance.to_model.apply(c))));
             let count = self.stage.models[*model].material_of.len();
-            Arc::make_mut(&mut self.objects).push(Object {
-                name: name.clone(),
-                first: first as u32,
-                count: count as u32,
-            });
+            let object = Object { name: name.clone(), first: first as u32, count: count as u32 };
+            Arc::make_mut(&mut self.objects).push(object);
             let placement = Placement {
                 model: *model,
                 first: first as u32,
@@ -92,7 +107,7 @@ impl Builder<'_> {
                 to_model: instance.to_model,
                 bounds: instance.bounds,
             };
-            self.stage.solids.extend(self.parts.solids[*model].iter().map(|solid| placed(solid, map)));
+            self.stage.solids.extend(parts.solids[*model].iter().map(|solid| placed(solid, map)));
             if count > 0 {
                 self.stage.placements.push(placement);
                 instances.push(instance);
@@ -102,19 +117,22 @@ impl Builder<'_> {
                 return Err(problem(*which, "more than 4 billion triangles in all places together".to_owned()));
             }
         }
-        self.stage.exit_tolerance = 0.5 * self.stage.coincidence_tolerance;
-        let models = self.parts.models.iter().zip(seen.iter().zip(norms)).map(|(model, (seen, norm))| {
-            let shapes = Shapes { triangles: model.list(), ..Shapes::default() };
-            let margin = (MARGIN * (seen.diagonal() + seen.farthest())).max(norm * self.stage.coincidence_tolerance);
-            bvh::build(&shapes, vec![], margin, quality, threads)
-        });
-        let models = models.collect();
-        let opaque = Arc::new(self.boxes_without_solids(&shapes, &instances));
-        let shapes = Shapes { instances: &instances, ..shapes };
-        self.ground = Ground { extent, margin: ROOM * self.stage.coincidence_tolerance, opaque };
-        self.stage.tree = Arc::new(bvh::build(&shapes, models, self.ground.margin, quality, threads));
-        find_touching(&mut self.stage, &self.ground.opaque);
-        self.find_primitives();
-        Ok(())
+        Ok((instances, met))
     }
+}
+
+/// The boxes around the models in their places.
+fn boxes_of_instances(parts: &Parts) -> Result<Vec<Bounds>, Problem> {
+    let around = |(which, name, model, map): &(Which, String, usize, Affine)| {
+        let Triangles { vertices, faces } = &parts.models[*model];
+        // Vertices of no face may lie anywhere, and must not make the boxes of others larger.
+        let vertices = if faces.is_empty() { &[] } else { vertices.as_slice() };
+        let bounds = Bounds::of(vertices.iter().map(|&v| map.apply(v)));
+        if bounds.farthest() <= LARGEST_NUMBER || faces.is_empty() {
+            Ok(bounds)
+        } else {
+            Err(problem(*which, format!("an instance of `{name}` reaches beyond 1e15")))
+        }
+    };
+    parts.placed.iter().map(around).collect()
 }

@@ -367,6 +367,21 @@ impl Shapes<'_> {
         let place = number - firsts[kind];
         of_kind(kind, BoundsOf(self, place)).unwrap_or_else(|| self.instances[place].bounds)
     }
+
+    /// The box around them all, without the instances.
+    pub fn extent(&self) -> Bounds {
+        (0..KINDS).filter_map(|kind| of_kind(kind, Extent(self))).fold(Bounds::EMPTY, Bounds::union)
+    }
+}
+
+struct Extent<'s, 'a>(&'s Shapes<'a>);
+
+impl ForKind for Extent<'_, '_> {
+    type Output = Option<Bounds>;
+    fn run<S: Kind>(self) -> Option<Bounds> {
+        let list = S::list(self.0);
+        (0..list.count()).map(|place| list.get(place).bounds()).reduce(Bounds::union)
+    }
 }
 
 /// The kind of a number, from those of the first of each; [`KINDS`] for instances.

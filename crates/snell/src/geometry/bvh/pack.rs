@@ -6,6 +6,7 @@ use crate::geometry::bvh::primitives::{INSTANCES, Primitives, columns};
 use crate::geometry::shape::{ForKind, KINDS, Kind, ShapeList, Shapes, kind_of, of_kind};
 use crate::lanes::MAX_WIDTH;
 use crate::memory;
+use crate::threads;
 
 /// Copies the primitives, leaf by leaf, and makes the leaves of the tree point to them.
 pub(super) fn pack(shapes: &Shapes<'_>, tree: &mut Tree, parallel: bool) -> Primitives {
@@ -52,7 +53,7 @@ fn fill(source: &Source<'_, '_>, jobs: &[(usize, &[u32])], numbers: &mut [f64], 
     if parallel && jobs.len() > ALONE {
         let (left, right) = jobs.split_at(jobs.len() / 2);
         let (left_numbers, right_numbers) = numbers.split_at_mut(right[0].0 - left[0].0);
-        rayon::join(|| fill(source, left, left_numbers, true), || fill(source, right, right_numbers, true));
+        threads::join(|| fill(source, left, left_numbers, true), || fill(source, right, right_numbers, true));
         return;
     }
     let mut rest = numbers;

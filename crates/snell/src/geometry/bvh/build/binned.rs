@@ -2,7 +2,7 @@
 //! Hierarchies*, 2007), along all three axes in one pass.
 
 use super::item::{Extent, Item, four};
-use rayon::prelude::*;
+use crate::threads;
 
 /// Bins on an axis. A node of `n` items gets `FEWEST_BINS + n / ITEMS_PER_BIN` of them, but no more than `MOST_BINS`.
 /// More bins cost more time than their better trees save: measured, `measure.rs`.
@@ -77,7 +77,8 @@ impl Bins {
             bins.fill(items, grid);
             bins
         };
-        items.par_chunks(MANY / 8).map(some).reduce(|| Self::EMPTY, |a, b| a.join(&b))
+        let chunks: Vec<&[Item]> = items.chunks(MANY / 8).collect();
+        threads::map(true, chunks, some).iter().fold(Self::EMPTY, Self::join)
     }
 
     fn join(mut self, other: &Self) -> Self {

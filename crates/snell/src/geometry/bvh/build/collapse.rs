@@ -6,7 +6,7 @@ use super::item::Extent;
 use super::{Leaf, Tree};
 use crate::geometry::bounds::OuterBox;
 use crate::geometry::bvh::node::{Child, Node, WIDTH};
-use rayon::prelude::*;
+use crate::threads;
 
 /// Cost of visiting a node: of testing a ray against its eight boxes.
 pub(super) const NODE_COST: f64 = 1.0;
@@ -229,8 +229,7 @@ pub(super) fn collapse(binary: &Piece, mut order: Vec<u32>, parallel: bool) -> T
         make(job, 0, &mut part, &mut Vec::new());
         part
     };
-    let parts: Vec<Part> =
-        if parallel { jobs.into_par_iter().map(part).collect() } else { jobs.into_iter().map(part).collect() };
+    let parts: Vec<Part> = threads::map(parallel, jobs, part);
     let Part { mut nodes, mut leaves, mut depth } = top;
     nodes.reserve_exact(parts.iter().map(|p| p.nodes.len()).sum());
     leaves.reserve_exact(parts.iter().map(|p| p.leaves.len()).sum());

@@ -134,8 +134,7 @@ fn figures() {
             for _ in 0..5 {
                 for (threads, times) in [1, 2].into_iter().zip(&mut times) {
                     let start = std::time::Instant::now();
-                    tree =
-                        crate::threads::share(threads, |parallel| build(boxes.len(), |i| boxes[i], quality, parallel));
+                    tree = threads::share(threads, |parallel| build(boxes.len(), |i| boxes[i], quality, parallel));
                     times.push(start.elapsed().as_secs_f64() * 1e3);
                 }
             }

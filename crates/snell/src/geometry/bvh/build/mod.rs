@@ -13,10 +13,10 @@ mod reinsertion;
 
 use super::node::{MAX_DEPTH, Node};
 use crate::geometry::bounds::OuterBox;
+use crate::threads;
 use binned::{Bins, Grid, Split};
 use collapse::{Binary, Costs, Piece};
 use item::{Extent, Item};
-use rayon::prelude::*;
 
 /// From this depth on nodes are halved, and 2^32 primitives are used up after 32 more levels.
 const SAH_DEPTH: usize = 64;
@@ -80,16 +80,12 @@ impl Builder {
             return Tree::default();
         }
         let item = |id: usize| Item::new(id as u32, &bounds(id));
-        let mut items: Vec<Item> =
-            if self.parallel { (0..count).into_par_iter().map(item).collect() } else { (0..count).map(item).collect() };
-        let centers = if self.parallel {
-            items.par_chunks(PARALLEL).map(binned::centers).reduce(|| Extent::EMPTY, |a, b| a.join(&b))
-        } else {
-            binned::centers(&items)
-        };
+        let mut items: Vec<Item> = threads::map(self.parallel, 0..count, item);
+        let chunks: Vec<&[Item]> = items.chunks(PARALLEL).collect();
+        let centers = threads::map(self.parallel, chunks, binned::centers);
+        let centers = centers.iter().fold(Extent::EMPTY, |all, some| all.join(some));
         let mut binary = self.grow_pieces(&mut items, &centers, 1).part;
-        let mut order: Vec<u32> =
-            if self.parallel { items.par_iter().map(Item::id).collect() } else { items.iter().map(Item::id).collect() };
+        let mut order: Vec<u32> = threads::map(self.parallel, &items, Item::id);
         drop(items);
         if self.quality == Quality::Best {
             let improved;
@@ -109,7 +105,7 @@ impl Builder {
         }
         let (left, [left_centers, right_centers]) = self.split(items, centers, depth, &mut bins);
         let (left, right) = items.split_at_mut(left);
-        let (left, right) = rayon::join(
+        let (left, right) = threads::join(
             || self.grow_pieces(left, &left_centers, depth + 1),
             || self.grow_pieces(right, &right_centers, depth + 1),
         );

@@ -3,7 +3,7 @@
 
 use super::collapse::{Binary, Costs};
 use super::item::Extent;
-use rayon::prelude::*;
+use crate::threads;
 
 /// How often nodes are moved.
 const ROUNDS: usize = 2;
@@ -109,13 +109,15 @@ fn sibling(nodes: &[Linked], at: u32) -> u32 {
 
 /// The best move of each node.
 fn find_moves(nodes: &[Linked], parallel: bool) -> Vec<Move> {
-    let all = 1..nodes.len() as u32;
-    if parallel {
-        all.into_par_iter().map_init(Vec::new, |stack, from| best_move(nodes, from, stack)).flatten_iter().collect()
-    } else {
+    const AT_ONCE: usize = 1 << 10;
+    let end = nodes.len() as u32;
+    let some = |first: u32| {
         let mut stack = Vec::new();
-        all.filter_map(|from| best_move(nodes, from, &mut stack)).collect()
-    }
+        let moves = (first..end.min(first + AT_ONCE as u32)).filter_map(|from| best_move(nodes, from, &mut stack));
+        moves.collect::<Vec<Move>>()
+    };
+    let firsts: Vec<u32> = (1..end).step_by(AT_ONCE).collect();
+    threads::map(parallel, firsts, some).concat()
 }
 
 /// Where the node `from` fits best: searched below its sibling, then below the sibling of its parent, and so on.

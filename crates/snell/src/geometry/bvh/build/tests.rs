@@ -10,7 +10,7 @@ fn cube(x: f32, y: f32, z: f32) -> OuterBox {
 }
 
 fn tree_of(boxes: &[OuterBox], quality: Quality, threads: usize) -> Tree {
-    crate::threads::share(threads, |parallel| build(boxes.len(), |i| boxes[i], quality, parallel))
+    threads::share(threads, |parallel| build(boxes.len(), |i| boxes[i], quality, parallel))
 }
 
 fn holds(outer: &OuterBox, inner: &OuterBox) -> bool {

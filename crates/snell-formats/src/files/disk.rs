@@ -1,36 +1,42 @@
 //! Reading with a limit, writing without losing what was there.
 
+use super::{Files, Out, in_memory, missing, too_large};
 use crate::report::Report;
 use std::fs::{File, Permissions};
-use std::io::{BufWriter, Cursor, Read, Seek, Write};
+use std::io::{BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 use tempfile::NamedTempFile;
 
-/// The largest scene or driver text that is read, in bytes.
-pub const MAX_SCENE_BYTES: u64 = 64 << 20;
-/// The largest model or picture that is read, in bytes.
-pub const MAX_MODEL_BYTES: u64 = 4 << 30;
+/// The files of this machine.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Disk;
 
-/// Reads a file of at most `limit` bytes.
-///
-/// # Errors
-/// When it cannot be opened or read, is a folder, or is larger.
-pub fn read(path: &Path, limit: u64) -> Result<Vec<u8>, Report> {
-    let shown = path.display();
-    let failed = |e: std::io::Error| match e.kind() {
-        std::io::ErrorKind::NotFound => Report::error(format!("there is no file `{shown}`")),
-        _ => Report::error(format!("cannot read `{shown}`: {e}")),
-    };
-    let file = File::open(path).map_err(failed)?;
-    let mut bytes = Vec::new();
-    // The limit holds for what has no size of its own too, like a pipe.
-    file.take(limit + 1).read_to_end(&mut bytes).map_err(failed)?;
-    if bytes.len() as u64 > limit {
-        return Err(Report::error(format!("`{shown}` is larger than {limit} bytes")));
+impl Files for Disk {
+    fn read(&self, path: &Path, limit: u64) -> Result<Vec<u8>, Report> {
+        let failed = |e: std::io::Error| match e.kind() {
+            std::io::ErrorKind::NotFound => missing(path),
+            _ => Report::error(format!("cannot read `{}`: {e}", path.display())),
+        };
+        let file = File::open(path).map_err(failed)?;
+        let mut bytes = Vec::new();
+        // The limit holds for what has no size of its own too, like a pipe.
+        file.take(limit + 1).read_to_end(&mut bytes).map_err(failed)?;
+        if bytes.len() as u64 > limit { Err(too_large(path, limit)) } else { Ok(bytes) }
     }
-    Ok(bytes)
+
+    fn is_file(&self, path: &Path) -> bool {
+        path.is_file()
+    }
+
+    fn is_folder(&self, path: &Path) -> bool {
+        path.is_dir()
+    }
+
+    fn list(&self, folder: &Path) -> Box<dyn Iterator<Item = PathBuf> + '_> {
+        Box::new(std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path()))
+    }
 }
 
 /// Are these two names of one file? Links are followed, and where the disk does not tell `A` from `a`, neither does this.
@@ -46,10 +52,6 @@ pub fn is_same_file(a: &Path, b: &Path) -> bool {
         matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
     }
 }
-
-/// Something to write to and to go back in.
-pub trait Out: Write + Seek {}
-impl<T: Write + Seek> Out for T {}
 
 /// The temporary file that is being written, to be removed if the program has to stop at once.
 static PENDING: Mutex<Option<PathBuf>> = Mutex::new(None);
@@ -165,16 +167,6 @@ fn target(path: &Path) -> Result<(PathBuf, PathBuf), Report> {
     }
 }
 
-/// What would be written, in memory.
-///
-/// # Errors
-/// When writing fails.
-pub fn in_memory(content: impl FnOnce(&mut dyn Out) -> std::io::Result<()>) -> std::io::Result<Vec<u8>> {
-    let mut bytes = Cursor::new(Vec::new());
-    content(&mut bytes)?;
-    Ok(bytes.into_inner())
-}
-
 /// Is a pipe or a device being written to, which may take for ever?
 static WAITING: AtomicBool = AtomicBool::new(false);
 
@@ -218,16 +210,6 @@ pub fn write(path: &Path, content: impl FnOnce(&mut dyn Out) -> std::io::Result<
     let written = temporary.persist(&target).map(drop).map_err(|e| failed(e.error));
     let _ = note(None);
     written
-}
-
-/// SHA-256 of some bytes, in hexadecimal.
-pub fn sha256(bytes: impl IntoIterator<Item = impl AsRef<[u8]>>) -> String {
-    use sha2::Digest;
-    let mut hash = sha2::Sha256::new();
-    for part in bytes {
-        hash.update(part.as_ref());
-    }
-    hash.finalize().iter().fold(String::new(), |text, byte| text + &format!("{byte:02x}"))
 }
 
 #[cfg(test)]
@@ -313,12 +295,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("big");
         std::fs::write(&path, [0; 11]).unwrap();
-        assert!(read(&path, 10).is_err());
-        assert_eq!(read(&path, 11).unwrap().len(), 11);
-    }
-
-    #[test]
-    fn sha256_of_the_empty_text_is_the_published_one() {
-        assert!(sha256([b""]).starts_with("e3b0c44298fc1c149afbf4c8996fb924"));
+        assert!(Disk.read(&path, 10).is_err());
+        assert_eq!(Disk.read(&path, 11).unwrap().len(), 11);
     }
 }
