@@ -434,7 +434,7 @@ class Scene(Value):
         progress: bool | Callable[[int, int, int], object] = True,
         **settings: Unpack[Settings],
     ) -> Sightings:
-        """Return where an object is seen, and by which ways.
+        """Return where an object is seen, and along which paths.
 
         Parameters
         ----------

@@ -277,7 +277,7 @@ class RayTree:
         return self._native.html()
 
     def figure(self) -> Figure:
-        """Draw the strongest way: at each surface the normal, the rays with their angles, the critical angle."""
+        """Draw the strongest light path: at each surface the normal, the rays with their angles, the critical angle."""
         return Figure(self._native.figure())
 
     def view(self, *, css_height: str | None = None) -> View:

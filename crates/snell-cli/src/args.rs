@@ -116,11 +116,11 @@ pub struct RenderArgs {
     #[arg(long, value_name = "KIND", value_parser = named::<Shadows>, help_heading = "Light")]
     pub shadows: Option<Shadows>,
 
-    /// One layer for each of the N strongest ways of light, and one for the rest: an EXR whose layers add up to the picture
+    /// One layer for each of the N strongest light paths, and one for the rest: an EXR whose layers add up to the picture
     #[arg(long, value_name = "N", conflicts_with = "only", value_parser = clap::value_parser!(u32).range(1..=1000), help_heading = "Light")]
     pub paths: Option<u32>,
-    /// Only the light of one way, like "glass(refract) green"
-    #[arg(long, value_name = "WAY", help_heading = "Light")]
+    /// Only the light of one path, like "glass(refract) green"
+    #[arg(long, value_name = "PATH", help_heading = "Light")]
     pub only: Option<String>,
 
     #[command(flatten)]
@@ -154,7 +154,7 @@ pub struct RenderArgs {
 Examples:
   snell explain lecture/default 256,256
   snell explain lecture/default 190,300 --html why.html      the tree and its rays in 3D, in one file
-  snell explain lecture/default 256,256 --svg why.svg        angles at every surface on the way
+  snell explain lecture/default 256,256 --svg why.svg        angles at every surface on the path
   snell explain lecture/default 256,400 --light left         why is this light missing here?
   snell explain lecture/default 256,256 --without glass      the same pixel without an object
   snell explain lecture/default 256,256 --set material.glass.eta=1.05
@@ -173,7 +173,7 @@ pub struct ExplainArgs {
     /// Write a page that shows the tree and its rays in 3D; it needs nothing else and opens from disk
     #[arg(long, value_name = "FILE", conflicts_with_all = ["svg", "light", "set", "without"], help_heading = "Form")]
     pub html: Option<PathBuf>,
-    /// Write a drawing of the angles at each surface on the strongest way
+    /// Write a drawing of the angles at each surface on the strongest path
     #[arg(long, value_name = "FILE", conflicts_with_all = ["light", "set", "without"], help_heading = "Form")]
     pub svg: Option<PathBuf>,
     /// Show no more bounces than this
@@ -188,7 +188,7 @@ pub struct ExplainArgs {
     /// The same pixel without an object
     #[arg(long, value_name = "OBJECT", help_heading = "Questions")]
     pub without: Option<String>,
-    /// Which pixels show this object, and by which ways?
+    /// Which pixels show this object, and along which paths?
     #[arg(long, value_name = "OBJECT", conflicts_with_all = ["pixel", "json", "html", "svg", "light", "without"], help_heading = "Questions")]
     pub find: Option<String>,
     /// With --find: a picture of where it is seen, and how much

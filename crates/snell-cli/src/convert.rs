@@ -72,16 +72,16 @@ fn heading(loaded: &Loaded) -> String {
     format!("# From {}{dialect}.\n\n", plain(&loaded.source.name).replace('\n', " "))
 }
 
-/// The way from a folder to a file, with `/` on every system.
+/// The path from a folder to a file, with `/` on every system.
 fn relative(file: &Path, folder: &Path) -> String {
     let whole = |p: &Path| p.canonicalize().or_else(|_| std::path::absolute(p)).unwrap_or_else(|_| p.to_owned());
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     let (file, folder) = (whole(file), whole(folder));
     let common = file.components().zip(folder.components()).take_while(|(a, b)| a == b).count();
     let up = folder.components().skip(common).map(|_| Component::ParentDir);
-    let way: PathBuf = up.chain(file.components().skip(common)).collect();
-    let way = way.to_string_lossy();
-    if cfg!(windows) { way.replace('\\', "/") } else { way.into_owned() }
+    let path: PathBuf = up.chain(file.components().skip(common)).collect();
+    let path = path.to_string_lossy();
+    if cfg!(windows) { path.replace('\\', "/") } else { path.into_owned() }
 }
 
 #[cfg(test)]

@@ -1,11 +1,11 @@
-//! `snell render --paths` and `--only`: a picture by the ways of its light.
+//! `snell render --paths` and `--only`: a picture by its light paths.
 
 use crate::args::{ProgressKind, RenderArgs};
 use crate::output;
 use crate::progress::Reporter;
 use crate::recipe::same_film;
 use crate::say::{FAILED, Failure, Outcome, USAGE, tell};
-use snell::explain::{Path as Way, layers, only};
+use snell::explain::{Path as LightPath, layers, only};
 use snell::film::{Crop, Film, Rgb};
 use snell::render::Options;
 use snell::world::{CompiledScene, World};
@@ -15,28 +15,28 @@ use snell_formats::recipe::Recipe;
 use snell_formats::report::known_names;
 use std::path::Path;
 
-/// Renders one layer for each of the strongest ways, or one way only.
+/// Renders one layer for each of the strongest paths, or one only.
 pub fn run(compiled: &CompiledScene, mut recipe: Recipe, args: &RenderArgs, output: &Path, format: Format) -> Outcome {
     if recipe.crop.is_some() {
         let report = Report::error("--paths and --only look at whole pictures");
         return Err(Failure::new(USAGE, report.help("leave out --crop, or choose a smaller --size")));
     }
     let world = compiled.world();
-    let way = recipe.only.as_ref().map(|text| way(text, world)).transpose()?;
-    if way.is_none() && format != Format::Exr {
+    let path = recipe.only.as_ref().map(|text| light_path(text, world)).transpose()?;
+    if path.is_none() && format != Format::Exr {
         let report = Report::error("only EXR pictures have layers").help("name one, like -o paths.exr");
         return Err(Failure::new(USAGE, report));
     }
     let [width, height] = world.camera.size;
-    let reporter = Reporter::new(args.progress, args.quiet, "ways of light");
+    let reporter = Reporter::new(args.progress, args.quiet, "light paths");
     let update = |progress| reporter.update(progress);
     let options = Options { threads: args.threads.into(), progress: Some(&update), ..Options::default() };
     let before = recipe.film_sha256.take();
-    if let Some(way) = way {
-        let pixels = only(compiled, &way, &options).unwrap_or_default();
+    if let Some(path) = path {
+        let pixels = only(compiled, &path, &options).unwrap_or_default();
         reporter.finish();
         let seen = pixels.iter().filter(|pixel| **pixel != Rgb::gray(0.0)).count();
-        say(args, &format!("{}: {way}, in {seen} of {} pixels", output::shown(output), pixels.len()));
+        say(args, &format!("{}: {path}, in {seen} of {} pixels", output::shown(output), pixels.len()));
         let film = film([width, height], pixels)?;
         let encoding = compiled.scene().render.encoding();
         recipe.remember(&film);
@@ -51,7 +51,7 @@ pub fn run(compiled: &CompiledScene, mut recipe: Recipe, args: &RenderArgs, outp
     // A black picture has no shares.
     let total = if total == 0.0 { 1.0 } else { total };
     let mut named: Vec<(String, Vec<Rgb>)> =
-        split.layers.into_iter().map(|(way, pixels)| (way.to_string(), pixels)).collect();
+        split.layers.into_iter().map(|(path, pixels)| (path.to_string(), pixels)).collect();
     named.push(("rest".to_owned(), split.rest));
     for (name, pixels) in &named {
         let share: f64 = pixels.iter().map(|c| c.mean()).sum();
@@ -65,18 +65,18 @@ pub fn run(compiled: &CompiledScene, mut recipe: Recipe, args: &RenderArgs, outp
     same_film(&recipe, before.as_deref())
 }
 
-/// The way that a text names, if all of its objects are there.
-fn way(text: &str, world: &World) -> Result<Way, Failure> {
-    let way = Way::parse(text).map_err(|e| {
+/// The path that a text names, if all of its objects are there.
+fn light_path(text: &str, world: &World) -> Result<LightPath, Failure> {
+    let path = LightPath::parse(text).map_err(|e| {
         let help =
-            "like --only \"glass(refract) green\"; snell render --paths 20 -o paths.exr lists the ways of a picture";
+            "like --only \"glass(refract) green\"; snell render --paths 20 -o paths.exr lists the paths of a picture";
         Failure::new(USAGE, Report::error(e.to_string()).help(help))
     })?;
     let known = world.object_names();
-    let steps = way.legs.iter().map(|leg| leg.object.as_str());
-    let ends = std::iter::once(way.end.as_str()).filter(|end| *end != snell::explain::SKY);
+    let steps = path.legs.iter().map(|leg| leg.object.as_str());
+    let ends = std::iter::once(path.end.as_str()).filter(|end| *end != snell::explain::SKY);
     match steps.chain(ends).find(|name| !known.contains(name)) {
-        None => Ok(way),
+        None => Ok(path),
         Some(name) => {
             let report = Report::error(format!("no object is called `{name}`"));
             Err(Failure::new(USAGE, report.help(known_names(name, known))))

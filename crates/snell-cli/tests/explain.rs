@@ -1,4 +1,4 @@
-//! `snell explain`, and the ways of light in `snell render`.
+//! `snell explain`, and the light paths in `snell render`.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
@@ -83,7 +83,7 @@ fn pages_and_drawings_need_nothing_else() {
 }
 
 #[test]
-fn pictures_come_apart_by_their_ways() {
+fn pictures_come_apart_by_their_paths() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     let output = run(at, &["render", "lecture/default", "--size", "48x48", "--paths", "4", "-o", "paths.exr"]);

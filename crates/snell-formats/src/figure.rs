@@ -1,4 +1,4 @@
-//! The planes of incidence along the strongest way of a pixel, with normals, angles and critical angles, as SVG.
+//! The planes of incidence along the strongest light path of a pixel, with normals, angles and critical angles, as SVG.
 
 use snell::explain::text::{bytes, mean};
 use snell::explain::{ExplainedHit, ExplainedNode, Explanation, NodeKind};
@@ -19,20 +19,20 @@ const MOST: usize = 9;
 const RAY: f64 = 105.0;
 const MIDDLE: [f64; 2] = [WIDTH / 2.0, 172.0];
 
-/// One panel for each surface on the way of the strongest contribution.
+/// One panel for each surface on the path of the strongest contribution.
 pub fn figure(explanation: &Explanation) -> String {
     let nodes = explanation.samples.iter().map(|sample| sample.nodes.as_slice());
     let strongest = nodes
         .flat_map(|nodes| nodes.iter().map(move |node| (nodes, node)))
         .max_by(|a, b| mean(a.1.contribution).total_cmp(&mean(b.1.contribution)));
-    let mut way: Vec<(&[ExplainedNode], &ExplainedNode)> = Vec::new();
+    let mut path: Vec<(&[ExplainedNode], &ExplainedNode)> = Vec::new();
     let mut at = strongest;
     while let Some((nodes, node)) = at {
-        way.push((nodes, node));
+        path.push((nodes, node));
         at = node.parent.map(|parent| (nodes, &nodes[parent]));
     }
-    way.reverse();
-    let panels: Vec<String> = way.iter().filter_map(|(nodes, node)| panel(nodes, node)).take(MOST).collect();
+    path.reverse();
+    let panels: Vec<String> = path.iter().filter_map(|(nodes, node)| panel(nodes, node)).take(MOST).collect();
     let (columns, rows) = (panels.len().min(COLUMNS), panels.len().div_ceil(COLUMNS));
     let [x, y] = explanation.pixel;
     let [r, g, b] = bytes(explanation.color, explanation.transfer);
@@ -41,8 +41,8 @@ pub fn figure(explanation: &Explanation) -> String {
     let dark = strongest.is_none_or(|(_, node)| node.contribution == [0.0; 3]);
     let what = match (panels.is_empty(), dark) {
         (true, _) => "its ray meets nothing",
-        (false, true) => "no light comes along its ways; one of them",
-        (false, false) => "along its strongest way",
+        (false, true) => "no light comes along its paths; one of them",
+        (false, false) => "along its strongest light path",
     };
     let mut svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" \

@@ -72,10 +72,10 @@ pub struct Recipe {
     /// Bits per channel of a PNG, 8 if left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bits: Option<u8>,
-    /// Layers for so many ways of light.
+    /// Layers for so many light paths.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub paths: Option<u32>,
-    /// Only the light of this way.
+    /// Only the light of this path.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub only: Option<String>,
     /// Folders in which models were looked for first.

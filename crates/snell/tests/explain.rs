@@ -145,7 +145,7 @@ fn the_bounds_hold_ten_levels_deeper() {
     }
 }
 
-/// The strongest ways and the rest make the picture.
+/// The strongest paths and the rest make the picture.
 #[test]
 fn layers_add_up_to_the_picture() {
     for (name, scene) in scenes("gallery/bubbles", 24).into_iter().chain(scenes("lecture/default", 32)) {
@@ -155,7 +155,7 @@ fn layers_add_up_to_the_picture() {
         let split = layers(&compiled, 5, &Options::default()).unwrap();
         assert_eq!(split.picture, film.pixels, "{name}");
         let left = split.rest.iter().any(|c| *c != Rgb::gray(0.0));
-        // Bubbles have few ways in the lecture's model, which refracts only in spheres; the others have more than five.
+        // Bubbles have few paths in the lecture's model, which refracts only in spheres; the others have more than five.
         let few = name == "gallery/bubbles, Lecture";
         assert_eq!((split.layers.len() == 5, left), (!few, !few), "{name}");
         for (i, pixel) in film.pixels.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! `--find`: in which pixels an object is seen, and by which way.
+//! `--find`: in which pixels an object is seen, and along which path.
 
 use super::{Asked, known_object};
 use crate::args::{ExplainArgs, ProgressKind};
@@ -37,10 +37,10 @@ pub fn run(asked: &Asked, object: &str, args: &ExplainArgs) -> Outcome {
         let _ = writeln!(text, "{pixels:9} px  {path}");
     }
     if found.paths.len() > LISTED {
-        let _ = writeln!(text, "          … and {} more ways", found.paths.len() - LISTED);
+        let _ = writeln!(text, "          … and {} more paths", found.paths.len() - LISTED);
     }
     let pixels = found.mask.iter().filter(|share| **share > 0.0).count();
-    let _ = writeln!(text, "{pixels:9} px  together; above, a pixel counts once for each of its ways");
+    let _ = writeln!(text, "{pixels:9} px  together; above, a pixel counts once for each of its paths");
     if let Some((file, format)) = mask {
         let [width, height] = world.camera.size;
         let crop = asked.recipe.crop.unwrap_or(Crop { x: 0, y: 0, width, height });

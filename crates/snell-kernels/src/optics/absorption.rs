@@ -23,7 +23,7 @@ pub fn sigma_a(attenuation_color: Rgb, attenuation_distance: f64) -> Rgb {
     Rgb::new(per_unit(attenuation_color.r), per_unit(attenuation_color.g), per_unit(attenuation_color.b))
 }
 
-/// The part of the light that is left after a way of `distance` scene units.
+/// The part of the light that is left after `distance` scene units.
 ///
 /// From 0 to 1, with an error of less than 0.62 ulp (see [`exp`]) and `½ ulp·sigma_a·distance`. Exactly 1 where either
 /// number is 0, whatever the other is, infinity included.
@@ -60,7 +60,7 @@ mod tests {
             }
         }
 
-        /// Two ways in a row are one way.
+        /// Two distances in a row are one.
         #[test]
         fn ways_add_up(sigma_a in 0.0..10.0f64, first in 0.0..3.0f64, second in 0.0..3.0f64) {
             let together = transmittance(sigma_a, first + second);

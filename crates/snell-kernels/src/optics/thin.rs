@@ -48,7 +48,7 @@ pub fn origin_behind<L: Lanes>(p: Vec3<L>, n: Vec3<L>, wo: Vec3<L>, thickness: L
     p + (wo - n * cos_theta_i) * back
 }
 
-/// Length of the way through the pane once, in the units of `thickness`: what absorption needs. Infinite where there is no
+/// Path length through the pane once, in the units of `thickness`: what absorption needs. Infinite where there is no
 /// refracted ray.
 #[inline(always)]
 pub fn slanted_pass<L: Lanes>(thickness: L, cos_theta_i: L, eta: L) -> L {

@@ -46,7 +46,7 @@ impl CameraFrame {
     pub fn rays<L: Lanes>(&self, across: L, up: L) -> (Vec3<L>, Vec3<L>) {
         if self.from_eye {
             // Without the eye's place, which would cost digits far from the origin.
-            return (self.eye.splat(), self.way(across, up).unit());
+            return (self.eye.splat(), self.direction(across, up).unit());
         }
         let origin = self.point(across, up);
         (origin, (origin - self.eye.splat()).unit())
@@ -60,8 +60,8 @@ impl CameraFrame {
     /// Is the image plane where `near` puts it, to three digits, in spite of rounding? Very near to the eye, or with the eye very
     /// far from the origin if rays start on the plane, it is not, and rays have wrong directions or none.
     pub fn has_image_plane(&self) -> bool {
-        let way = if self.from_eye { self.way(0.0, 0.0) } else { self.point(0.0, 0.0) - self.eye };
-        (way.length() / self.near + 1.0).abs() < 1e-3
+        let middle = if self.from_eye { self.direction(0.0, 0.0) } else { self.point(0.0, 0.0) - self.eye };
+        (middle.length() / self.near + 1.0).abs() < 1e-3
     }
 
     /// The four corners of the picture on the image plane.
@@ -86,7 +86,7 @@ impl CameraFrame {
 
     /// From the eye to a point of the image plane.
     #[inline(always)]
-    fn way<L: Lanes>(&self, px: L, py: L) -> Vec3<L> {
+    fn direction<L: Lanes>(&self, px: L, py: L) -> Vec3<L> {
         let [u, v, w] = self.axes;
         (w * self.near).splat() + u.splat() * px + v.splat() * py
     }

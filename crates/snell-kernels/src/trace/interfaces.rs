@@ -1,4 +1,4 @@
-//! Where rays meet real optics: from which media into which, and what was absorbed on the way.
+//! Where rays meet real optics: from which media into which, and what was absorbed between them.
 //!
 //! Inside a solid only faces that lead out of it count, outside only those that lead in (`Media::cross`): no distance is so
 //! small that a ray could meet the face it comes from, and an edge between two faces is crossed once. Faces that lie in one place,
@@ -6,7 +6,7 @@
 //! an opaque surface among them is what is seen. Where both media are the same, or have the same index and the face shows
 //! nothing itself, there is no interface, and the ray goes on as if nothing had been there.
 //!
-//! At the start of a ray ways out count from a little behind it, ways in and opaque surfaces as `Leaving` says. A ray that starts
+//! At the start of a ray exits count from a little behind it, entries and opaque surfaces as `Leaving` says. A ray that starts
 //! within a solid at an edge may have been rounded to its outside, from where no face leads out: it leaves by the nearest one.
 
 use super::hits::{Batch, Hits, SKY};
@@ -53,7 +53,7 @@ table! {
         outer: Number,
         /// The band of the ray.
         band: Number,
-        /// What the media on its way have transmitted.
+        /// What the media along it have transmitted.
         transmittance: Rgb,
     }
 }
@@ -294,7 +294,7 @@ impl<G: Generation<Interfaces>> Kernel for FindInterfaces<'_, '_, G> {
                 }
             }
             for ray in ones(all & !met) {
-                // Every body ends somewhere: a ray that leaves the scene in one has missed its way out.
+                // Every body ends somewhere: a ray that leaves the scene in one has missed its exit.
                 let before = index(paths.before[ray]) as u32;
                 if before != OUTSIDE {
                     let (origin, dir) = packet.lines::<f64>(ray);
@@ -436,7 +436,7 @@ impl Paths {
         if t > self.clear[ray] { t > 0.0 } else { self.leaving(packet, ray).meets(stage, primitive, t) }
     }
 
-    /// For a ray that has missed its way out of something: was it rounded to the outside of an edge where it starts? Then it meets
+    /// For a ray that has missed its exit from something: was it rounded to the outside of an edge where it starts? Then it meets
     /// the nearest face there that leads out, at once.
     fn leave_where_it_starts(&mut self, media: &Media<'_>, packet: &mut Packet, ray: usize) -> bool {
         let before = index(self.before[ray]) as u32;
@@ -484,7 +484,7 @@ impl Paths {
             && media.contains(before, solid)
             && self.leave_where_it_starts(media, packet, ray)
         {
-            // Nothing is entered twice: there was a way out.
+            // Nothing is entered twice: there was an exit.
             return self.meet(media, packet, ray, pixel, statistics);
         }
         let mut place = Place { after: before, up_to: t, face: (t, primitive), enters };
@@ -501,7 +501,7 @@ impl Paths {
         let Place { after, up_to, face, enters } = place;
         let is_clear = t > self.clear[ray].max(self.since[ray] + stage.coincidence_tolerance);
         if after == before && !enters && is_clear && !media.contains(before, solid) {
-            // Along the rim of a solid a ray meets a way out and a way in, in one place and in any order; and a face that it sees
+            // Along the rim of a solid a ray meets an exit and an entry, in one place and in any order; and a face that it sees
             // edge on may look either way.
             if !stage.is_edge_on(primitive as usize, dir) {
                 match self.rim(stage, packet, ray, solid) {
@@ -573,13 +573,13 @@ impl Paths {
             !starts && (leads_out || leaving.meets(stage, primitive, t))
         });
         if self.crossings.len() > 1 {
-            // Along the rim of a solid there is a way in and a way out in one place, which is neither.
+            // Along the rim of a solid there is an entry and an exit in one place, which cancel.
             let enters = |&(t, primitive): &(f64, u32)| {
                 let solid = stage.interior_of(primitive as usize);
                 (solid, solid != NO_SOLID && stage.enters(primitive as usize, solid, origin, dir, t))
             };
-            let ways: Vec<_> = self.crossings.iter().map(enters).collect();
-            let mut kept = ways.iter().map(|&(solid, way)| !ways.contains(&(solid, !way)));
+            let entries: Vec<_> = self.crossings.iter().map(enters).collect();
+            let mut kept = entries.iter().map(|&(solid, enters)| !entries.contains(&(solid, !enters)));
             self.crossings.retain(|_| kept.next().unwrap_or(true));
         }
         let mut crossed = |&(t, primitive): &(f64, u32)| {
@@ -616,7 +616,7 @@ impl Paths {
         next
     }
 
-    /// The farthest face of a solid in the place of the hit, if there are ways in among them.
+    /// The farthest face of a solid in the place of the hit, if there are entries among them.
     fn rim(&mut self, stage: &Stage, packet: &Packet, ray: usize, solid: u32) -> Option<f64> {
         let ((origin, dir), t) = (packet.lines::<f64>(ray), packet.t[ray]);
         let off = until_clear(stage, stage.geometric_normal(index(packet.primitive[ray]), origin + dir * t).dot(dir));

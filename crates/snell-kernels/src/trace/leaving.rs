@@ -15,8 +15,8 @@
 //!
 //! "Within" is [`Stage::coincidence_tolerance`](crate::stage::Stage), what a hit may be off. Everything farther away blocks light.
 //!
-//! And what is in the way of a ray that goes back, to a light or from a mirror, is asked from a place a little [`back`] on the
-//! way on which the surface was reached: there it is surely on the right side of whatever else is there. The direction stays that of
+//! And what is in the way of a ray that goes back, to a light or from a mirror, is asked from a place a little [`back`] along
+//! the ray that reached the surface: there it is surely on the right side of whatever else is there. The direction stays that of
 //! the place itself, and so do distances, except that tinted light is dimmed from where it is asked for.
 
 use crate::geometry::Vec3;
@@ -32,8 +32,8 @@ pub(super) fn until_clear<L: Lanes>(stage: &Stage, cos: L) -> L {
     L::splat(stage.coincidence_tolerance) / cos.max(-cos)
 }
 
-/// How far back on the way of length `t` to a surface a place is that is surely in front of it, by more than a hit may be off. In a
-/// corner ways are short.
+/// How far back along a ray that reaches a surface after `t` a place is that is surely in front of the surface, by more than a hit may
+/// be off. In a corner that ray is short.
 #[inline(always)]
 pub(super) fn back<L: Lanes>(stage: &Stage, t: L) -> L {
     // Spheres have no edges.
@@ -41,9 +41,9 @@ pub(super) fn back<L: Lanes>(stage: &Stage, t: L) -> L {
     L::splat(far).min(t * L::splat(0.5))
 }
 
-/// How far back on its way of length `t` a ray starts that goes on through a face that is only partly there, and how far it then goes
+/// How far back along a ray of length `t` the one starts that goes on through a face that is only partly there, and how far it then goes
 /// until it is clear of that face's plane. What else is in the place of the face, like a wall behind a picture, is then in front of
-/// it, and nothing else is: the ray that was met here has come that way.
+/// it, and nothing else is: the ray that ended here has passed there.
 #[inline(always)]
 pub(super) fn through<L: Lanes>(stage: &Stage, cos: L, t: L) -> [L; 2] {
     let off = until_clear(stage, cos).min(L::splat(SLANTED * stage.coincidence_tolerance));

@@ -73,10 +73,10 @@ impl<'a> Media<'a> {
         self.stage.tree.crossings(point, dir, [0.0, f64::INFINITY], &mut crossings);
         let mut balance = BTreeMap::new();
         for place in crossings.chunk_by(|&a, &b| are_in_one_place(self.stage, (point, dir), a, b)) {
-            // On an edge several faces are met, which are one way in, one way out, or, along a rim, neither.
-            let mut ways: BTreeMap<u32, (bool, bool)> = BTreeMap::new();
+            // On an edge several faces are met, which are one entry, one exit, or, along a rim, neither.
+            let mut passed: BTreeMap<u32, (bool, bool)> = BTreeMap::new();
             let mut met = |solid: u32, enters: bool| {
-                let (in_, out) = ways.entry(solid).or_default();
+                let (in_, out) = passed.entry(solid).or_default();
                 *(if enters { in_ } else { out }) = true;
             };
             for &(t, primitive) in place {
@@ -90,7 +90,7 @@ impl<'a> Media<'a> {
                     }
                 }
             }
-            for (solid, (enters, leaves)) in ways {
+            for (solid, (enters, leaves)) in passed {
                 *balance.entry(solid).or_insert(0) += i32::from(leaves) - i32::from(enters);
             }
         }
@@ -123,7 +123,7 @@ impl<'a> Media<'a> {
             return set;
         }
         let (after, front) = (self.across(set, solid), self.stage.exterior_of(primitive as usize));
-        // What is in front of an interface is left on the way in, and entered on the way out.
+        // What is in front of an interface is left on entry, and entered on exit.
         if front != NO_SOLID && enters == self.contains(after, front) { self.across(after, front) } else { after }
     }
 
@@ -177,26 +177,26 @@ impl<'a> Media<'a> {
     }
 
     /// What of the light from `distance` away reaches a point in this set, straight through what is transparent: black behind
-    /// an opaque surface. At each interface the light loses what Fresnel reflects at the angle of its straight way on the side
+    /// an opaque surface. At each interface the light loses what Fresnel reflects at the angle of its straight path on the side
     /// of the thinner medium, so that nothing is totally reflected; between them, what the media absorb. Between parallel faces they do
-    /// so over the refracted way, as in a plate or a stack of plates, elsewhere over the straight one.
-    pub(super) fn light_along(&mut self, way: &Leaving, distance: f64, mut set: u32) -> Rgb {
+    /// so over the refracted path, as in a plate or a stack of plates, elsewhere over the straight one.
+    pub(super) fn light_along(&mut self, ray: &Leaving, distance: f64, mut set: u32) -> Rgb {
         let stage = self.stage;
         let mut crossings = core::mem::take(&mut self.crossings);
         crossings.clear();
-        stage.tree.crossings(way.origin, way.dir, [-stage.exit_tolerance, distance], &mut crossings);
+        stage.tree.crossings(ray.origin, ray.dir, [-stage.exit_tolerance, distance], &mut crossings);
         let (mut light, mut since) = (Rgb::gray(1.0), 0.0);
         // The interface before, and the index in front of the stack of parallel ones that it belongs to.
         let mut last: Option<((usize, Vec3), f64)> = None;
         // What lies in one place is one interface, as for all rays.
-        for place in crossings.chunk_by(|&a, &b| are_in_one_place(stage, (way.origin, way.dir), a, b)) {
+        for place in crossings.chunk_by(|&a, &b| are_in_one_place(stage, (ray.origin, ray.dir), a, b)) {
             let (t, first) = place[0];
             let (mut next, mut entered, mut pane) = (set, None, false);
             for &(t, primitive) in place {
                 let solid = stage.interior_of(primitive as usize);
-                let meets = way.meets(stage, primitive, t);
+                let meets = ray.meets(stage, primitive, t);
                 if solid == NO_SOLID {
-                    let point = way.origin + way.dir * t;
+                    let point = ray.origin + ray.dir * t;
                     if stage.is_hole(primitive as usize, point) {
                         continue;
                     }
@@ -204,13 +204,13 @@ impl<'a> Media<'a> {
                     let is_pane = stage.is_thin(primitive as usize) && !stage.is_opaque_at(primitive as usize, point);
                     let again = is_pane && core::mem::replace(&mut pane, true);
                     if meets && t < distance && !again {
-                        light = light * self.transmitted_by_surface(set, primitive as usize, way, t);
+                        light = light * self.transmitted_by_surface(set, primitive as usize, ray, t);
                     }
                     continue;
                 }
                 let enters = !self.contains(next, solid);
                 if !enters || meets {
-                    let after = self.cross(next, primitive, way.origin, way.dir, t);
+                    let after = self.cross(next, primitive, ray.origin, ray.dir, t);
                     if enters && after != next {
                         entered = Some((solid, primitive));
                     }
@@ -219,13 +219,13 @@ impl<'a> Media<'a> {
             }
             if self.top(next) != self.top(set) {
                 if let Some((_, primitive)) = entered.filter(|(solid, _)| *solid == self.top(next)) {
-                    light = light * stage.lets_through(primitive as usize, way.origin + way.dir * t);
+                    light = light * stage.lets_through(primitive as usize, ray.origin + ray.dir * t);
                 }
                 let (before, after) = (*self.medium(set), *self.medium(next));
-                let (hit, straight) = ((first as usize, way.origin + way.dir * t), t - since);
-                let cos_theta_i = stage.geometric_normal(hit.0, hit.1).dot(way.dir).abs();
-                let stack = last.filter(|&(other, _)| stage.are_parallel([other, hit], way.dir)).map(|(_, eta)| eta);
-                let length = stack.map_or(straight, |eta| refracted_way(straight, cos_theta_i, before.eta / eta));
+                let (hit, straight) = ((first as usize, ray.origin + ray.dir * t), t - since);
+                let cos_theta_i = stage.geometric_normal(hit.0, hit.1).dot(ray.dir).abs();
+                let stack = last.filter(|&(other, _)| stage.are_parallel([other, hit], ray.dir)).map(|(_, eta)| eta);
+                let length = stack.map_or(straight, |eta| refracted_length(straight, cos_theta_i, before.eta / eta));
                 light = light * transmittance_rgb::<f64>(before.sigma_a, length);
                 (since, last) = (t, Some((hit, stack.unwrap_or(before.eta))));
                 let eta = before.eta.max(after.eta) / before.eta.min(after.eta);
@@ -241,19 +241,19 @@ impl<'a> Media<'a> {
     }
 
     /// What a surface that no solid has lets through: a pane something, others what is not there of them.
-    fn transmitted_by_surface(&self, set: u32, primitive: usize, way: &Leaving, t: f64) -> Rgb {
-        let (stage, point) = (self.stage, way.origin + way.dir * t);
+    fn transmitted_by_surface(&self, set: u32, primitive: usize, ray: &Leaving, t: f64) -> Rgb {
+        let (stage, point) = (self.stage, ray.origin + ray.dir * t);
         let material = &stage.materials[stage.material_of(primitive) as usize];
         if !material.is_pane() {
             return stage.lets_through(primitive, point);
         }
         let eta = material.eta / self.medium(set).eta;
         let pane = Pane::<f64> { thickness: material.thickness, eta, sigma_a: material.sigma_a };
-        let cos_theta_i = stage.geometric_normal(primitive, point).dot(way.dir).abs();
+        let cos_theta_i = stage.geometric_normal(primitive, point).dot(ray.dir).abs();
         stage.lets_through(primitive, point) * pane.passage(cos_theta_i).transmittance
     }
 
-    /// Is a ray lost that has met no way out of this set and is at `point`? Only if that is really in a body of the set: a ray along
+    /// Is a ray lost that has met no exit from this set and is at `point`? Only if that is really in a body of the set: a ray along
     /// a rim, or one that was rounded out of a corner, is not. What interfaces fill may be as wide as the sea.
     pub fn is_lost(&mut self, set: u32, point: Vec3) -> bool {
         let is_body = |&solid: &u32| self.stage.solids[solid as usize].between_faces_of.is_none();
@@ -326,9 +326,9 @@ impl<'a> Media<'a> {
     }
 }
 
-/// Length of the refracted way between two parallel faces that are `straight` apart along a straight one. `eta` is the index
-/// between them relative to where that is the way of the light. A way that cannot be refracted stays straight.
-fn refracted_way(straight: f64, cos_theta_i: f64, eta: f64) -> f64 {
+/// Length of the refracted path between two parallel faces that are `straight` apart along a straight one. `eta` is the index
+/// between them relative to where light travels so. A path that cannot be refracted stays straight.
+fn refracted_length(straight: f64, cos_theta_i: f64, eta: f64) -> f64 {
     let length = slanted_pass(straight * cos_theta_i, cos_theta_i, eta);
     if length.is_finite() { length } else { straight }
 }

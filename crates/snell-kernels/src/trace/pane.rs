@@ -32,10 +32,10 @@ impl<L: Lanes> Pane<L> {
     #[inline(always)]
     pub fn passage(&self, cos_theta_i: L) -> Passage<L> {
         let r = fresnel_dielectric(cos_theta_i, self.eta);
-        let way = slanted_pass(self.thickness, cos_theta_i, self.eta);
-        // Beyond the critical angle there is no way through, and nothing to absorb.
-        let way = L::select(r.lt(L::splat(1.0)), way, L::splat(0.0));
-        let tau = transmittance_rgb(self.sigma_a, way);
+        let length = slanted_pass(self.thickness, cos_theta_i, self.eta);
+        // Beyond the critical angle nothing goes through, and nothing to absorb.
+        let length = L::select(r.lt(L::splat(1.0)), length, L::splat(0.0));
+        let tau = transmittance_rgb(self.sigma_a, length);
         let ([r_red, t_red], [r_green, t_green], [r_blue, t_blue]) = (slab(r, tau.r), slab(r, tau.g), slab(r, tau.b));
         Passage { reflectance: Rgb::new(r_red, r_green, r_blue), transmittance: Rgb::new(t_red, t_green, t_blue) }
     }

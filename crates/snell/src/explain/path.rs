@@ -1,10 +1,10 @@
-//! The way of a contribution: `camera → glass(refract) → green`.
+//! The light path of a contribution: `camera → glass(refract) → green`.
 
 use crate::trace::{Node, RayKind, RayTree};
 use crate::world::CompiledScene;
 use std::fmt;
 
-/// What a ray did at an object on its way.
+/// What a ray did at an object on its path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum How {
     /// Its mirror image was followed.
@@ -13,7 +13,7 @@ pub enum How {
     Refract(u32),
 }
 
-/// One object on the way.
+/// One object on the path.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Leg {
     /// Its name.
@@ -25,7 +25,7 @@ pub struct Leg {
 /// From the camera, by some objects, to what is seen at the end: an object's own colour, or the `sky`.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Path {
-    /// The objects on the way.
+    /// The objects on the path.
     pub legs: Vec<Leg>,
     /// What is seen.
     pub end: String,
@@ -40,16 +40,16 @@ pub const SKY: &str = "sky";
 pub struct PathError(pub String);
 
 impl Path {
-    /// The way of a node's contribution.
+    /// The path of a node's contribution.
     pub fn of(compiled: &CompiledScene, tree: &RayTree, node: usize) -> Self {
         let end = tree.nodes[node].hit.as_ref().map_or(SKY, |hit| compiled.object(hit.primitive)).to_owned();
-        let mut way: Vec<&Node> =
+        let mut chain: Vec<&Node> =
             std::iter::successors(Some(&tree.nodes[node]), |n| n.parent.map(|p| &tree.nodes[p])).collect();
-        way.reverse();
+        chain.reverse();
         let mut legs: Vec<Leg> = Vec::new();
         // The objects that have been entered, and their legs: what happens inside belongs to them.
         let mut within: Vec<(&str, usize)> = Vec::new();
-        for pair in way.windows(2) {
+        for pair in chain.windows(2) {
             let Some(hit) = &pair[0].hit else { continue };
             let object = compiled.object(hit.primitive);
             let refracts = pair[1].kind == RayKind::Refracted;

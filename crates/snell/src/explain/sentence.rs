@@ -79,19 +79,19 @@ pub(super) fn of(compiled: &CompiledScene, trace: &PixelTrace) -> String {
     if parts.len() > NAMED {
         let rest: f64 = parts[NAMED..].iter().map(|(_, sum)| sum.mean()).sum();
         let others = parts.len() - NAMED;
-        clauses.push(format!("{} comes by {others} other way{}", share(rest), if others == 1 { "" } else { "s" }));
+        clauses.push(format!("{} comes along {others} other path{}", share(rest), if others == 1 { "" } else { "s" }));
     }
     clauses.join("; ") + "."
 }
 
-/// What is seen at the end of a path, and by which way.
+/// What is seen at the end of a path, and along which path.
 fn what(compiled: &CompiledScene, path: &Path) -> String {
     let end = match path.end.as_str() {
         SKY => "the background".to_owned(),
         name if path.legs.is_empty() => format!("{}`{name}` itself", kind(compiled, name)),
         name => format!("{}`{name}`", kind(compiled, name)),
     };
-    let mut way: Vec<(String, u32)> = Vec::new();
+    let mut legs: Vec<(String, u32)> = Vec::new();
     for Leg { object, how } in &path.legs {
         let leg = match how {
             How::Mirror => format!("in the mirror of `{object}`"),
@@ -99,12 +99,12 @@ fn what(compiled: &CompiledScene, path: &Path) -> String {
             How::Refract(1) => format!("through `{object}` after a reflection inside"),
             How::Refract(n) => format!("through `{object}` after {n} reflections inside"),
         };
-        match way.last_mut() {
+        match legs.last_mut() {
             Some((last, times)) if *last == leg => *times += 1,
-            _ => way.push((leg, 1)),
+            _ => legs.push((leg, 1)),
         }
     }
-    let way: Vec<String> = way
+    let legs: Vec<String> = legs
         .into_iter()
         .map(|(leg, times)| match times {
             1 => leg,
@@ -112,7 +112,7 @@ fn what(compiled: &CompiledScene, path: &Path) -> String {
             n => format!("{n} times {leg}"),
         })
         .collect();
-    if way.is_empty() { end } else { format!("{end}, seen {}", way.join(" and ")) }
+    if legs.is_empty() { end } else { format!("{end}, seen {}", legs.join(" and ")) }
 }
 
 fn kind(compiled: &CompiledScene, name: &str) -> &'static str {
@@ -129,8 +129,8 @@ fn bending(compiled: &CompiledScene, trace: &PixelTrace, path: &Path) -> String 
         tree.nodes[node].contribution != Rgb::gray(0.0) && Path::of(compiled, tree, node) == *path
     };
     let Some((tree, node)) = ends.find(shows) else { return String::new() };
-    let way = std::iter::successors(Some(node), |&n| tree.nodes[n].parent);
-    let hits = way.filter_map(|n| tree.nodes[n].parent.map(|parent| (n, parent)));
+    let chain = std::iter::successors(Some(node), |&n| tree.nodes[n].parent);
+    let hits = chain.filter_map(|n| tree.nodes[n].parent.map(|parent| (n, parent)));
     let first = hits.filter(|&(child, _)| tree.nodes[child].kind == RayKind::Refracted).last();
     let Some((_, at)) = first else { return String::new() };
     let Some(hit) = &tree.nodes[at].hit else { return String::new() };
