@@ -300,11 +300,15 @@ struct Directions<L: Lanes> {
 }
 
 impl<L: Lanes> Directions<L> {
-    /// By the shading normal, which gives way where it would send rays to the wrong side of the face.
+    /// By the shading normal, which yields where it would send rays to the wrong side of the face.
     #[inline(always)]
     fn new(hits: &Batch<'_, L, Interfaces>, eta: L) -> Self {
         let (wo, n, ng, zero) = (hits.wo(), hits.normal(), hits.geometric_normal(), L::splat(0.0));
-        let (shading, flat) = (Self::by(wo, n, eta), Self::by(wo, ng, eta));
+        let flat = Self::by(wo, ng, eta);
+        if !(hits.active & !(n.x.eq(ng.x) & n.y.eq(ng.y) & n.z.eq(ng.z))).any() {
+            return flat;
+        }
+        let shading = Self::by(wo, n, eta);
         let right = wo.dot(n).gt(zero)
             & shading.mirror.dot(ng).gt(zero)
             & (shading.refracted.dot(ng).lt(zero) | !shading.refracts);
