@@ -1,4 +1,17 @@
 //! The `snell` command: a thin face on the library. It holds no physics.
+//!
+//! ```text
+//!  arguments ── args ─▶ a verb: render, explain, diff, convert, check, info, scenes ── output ─▶ a file, or standard output
+//!                           ▲      │                                              │
+//!  a scene, a picture ── input     ├─▶ progress: how far it is, on stderr         └─▶ say: reports on stderr, exit codes
+//!  that remembers one, ── recipe   └─▶ signals: ^C and SIGTERM, which leave a picture that is whole
+//!  or standard input
+//! ```
+//!
+//! ```sh
+//! snell render lecture/default -o a.png   # makes a picture, which remembers how it was made
+//! snell explain a.png 256,256             # why a pixel of it has its colour
+//! ```
 
 mod args;
 mod check;

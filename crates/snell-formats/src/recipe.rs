@@ -187,7 +187,7 @@ impl Recipe {
             .map_err(|e| Report::error(format!("the recipe in `{}` cannot be read: {e}", path.display())))
     }
 
-    /// Reads what a picture remembers ([`Picture::recipe`](picture::Picture::recipe)).
+    /// Reads what a picture remembers ([`Picture::recipe`](crate::picture::Picture::recipe)).
     ///
     /// # Errors
     /// If it is no recipe, or one of another version.

@@ -1,6 +1,18 @@
 //! Scenes that are hard on the engine, and the matrix of settings that must not change a bit of their pictures.
 //!
 //! For tests and measurements only, native and in WASM. All scenes are computed: the same bits on every machine.
+//!
+//! ```text
+//!  glass, hostile, crowd, … ──▶ all() ──▶ matrix: lanes × threads × tiles, and ranges of samples ──▶ one line for each scene
+//!                                                                                                     │
+//!                                           native (tests/same_bits.rs, the binary) ── diff ── WASM (tests/wasm)
+//! ```
+//!
+//! ```
+//! use snell_test_scenes::{glass, matrix};
+//!
+//! println!("{}", matrix::all_ways("windows", &glass::windows(), &[1]));
+//! ```
 
 #![allow(clippy::unwrap_used, clippy::missing_panics_doc, reason = "a test that cannot go on fails")]
 
