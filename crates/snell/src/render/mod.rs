@@ -1,6 +1,7 @@
 //! From a world to a film: in one go or step by step, on as many threads as there are, with progress and cancellation.
 
 mod accumulator;
+mod partial;
 mod renderer;
 mod spread;
 mod warnings;
@@ -8,6 +9,7 @@ mod warnings;
 pub use crate::lanes::LaneWidth;
 pub use crate::settings::Settings;
 pub use accumulator::{Accumulator, MergeError};
+pub use partial::{Grid, PartialFilm, Piece};
 pub use renderer::Renderer;
 pub use warnings::warnings;
 
