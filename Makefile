@@ -12,7 +12,7 @@ demo: ## Build Snell, render the default scene, say where the picture is
 test: ## Everything that CI runs
 	@scripts/test.sh
 
-soak: ## Attack triangles with rays for ten minutes (SNELL_SOAK_SECONDS=3600 make soak for longer)
+soak: ## Attack triangles with rays for ten minutes, and kill renders (SNELL_SOAK_SECONDS=3600 make soak for longer)
 	@scripts/soak.sh
 
 fuzz: ## Fuzz every reader for a minute each (SECONDS_EACH=600 make fuzz for longer)

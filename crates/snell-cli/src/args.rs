@@ -14,6 +14,7 @@ use snell_formats::driver::Dialect;
 use snell_formats::schema::Form;
 use std::ffi::OsStr;
 use std::path::PathBuf;
+use std::time::Duration;
 
 const STYLES: Styles = Styles::styled()
     .header(AnsiColor::Yellow.on_default().bold())
@@ -42,6 +43,7 @@ pub enum Command {
     Scenes(ScenesArgs),
     Convert(ConvertArgs),
     Diff(DiffArgs),
+    Merge(MergeArgs),
     Check(CheckArgs),
     /// Print a JSON Schema: of scene files, for editors; of ray trees (`snell explain --json`); or of what the viewer shows
     Schema {
@@ -66,10 +68,13 @@ Examples:
   snell render lecture/default --size 4096x4096 --crop 1800,1800,400,400 -o rim.exr
   snell render drivers/*.txt -o out/
   snell render --from glass.png -o smooth.png --spp 64
-  snell render - -o - --format ppm < scene.toml > picture.ppm")]
+  snell render - -o - --format ppm < scene.toml > picture.ppm
+  snell render scene.toml --spp 4096 --checkpoint work.npz --until 2h -o night.exr
+  snell render --resume work.npz -o night.exr
+  snell render scene.toml --spp 64 --rows 0:256 --part top.npz")]
 pub struct RenderArgs {
     /// Scene files, driver files, or names of built-in scenes; - is standard input
-    #[arg(required_unless_present = "from", value_name = "SCENE", value_parser = SceneName, hide_possible_values = true)]
+    #[arg(required_unless_present_any = ["from", "resume"], value_name = "SCENE", value_parser = SceneName, hide_possible_values = true)]
     pub scenes: Vec<String>,
     /// The picture, or a folder for many; the ending decides the format: .png .ppm .exr .npy; - is standard output
     #[arg(short, long, value_name = "FILE")]
@@ -80,6 +85,28 @@ pub struct RenderArgs {
     /// Render a picture again, from what a PNG or EXR of Snell remembers, with what is changed by other options
     #[arg(long, value_name = "PICTURE", conflicts_with_all = ["scenes", "dialect"])]
     pub from: Option<PathBuf>,
+
+    /// Write sums of samples, for `snell merge`, instead of a picture: those of --rows and --samples
+    #[arg(long, value_name = "FILE.npz", conflicts_with_all = ["output", "paths", "only"], help_heading = "Parts")]
+    pub part: Option<PathBuf>,
+    /// Only these rows of the picture: from the first one to before the second one
+    #[arg(long, value_name = "A:B", requires = "part", value_parser = range, help_heading = "Parts")]
+    pub rows: Option<[u32; 2]>,
+    /// Only these samples of each pixel, of those that --spp counts: from the first one to before the second one
+    #[arg(long, value_name = "A:B", requires = "part", value_parser = range, help_heading = "Parts")]
+    pub samples: Option<[u32; 2]>,
+    /// Keep what is done in this file while it renders, and when it is stopped
+    #[arg(long, value_name = "FILE.npz", conflicts_with_all = ["part", "paths", "only"], help_heading = "Parts")]
+    pub checkpoint: Option<PathBuf>,
+    /// How often: 30s, 10m, 2h
+    #[arg(long, value_name = "TIME", default_value = "30s", value_parser = duration, help_heading = "Parts")]
+    pub every: Duration,
+    /// Go on with a checkpoint or a part, and keep what is done in it; with a larger --spp, add samples
+    #[arg(long, value_name = "FILE.npz", conflicts_with_all = ["scenes", "from", "part", "dialect", "paths", "only"], help_heading = "Parts")]
+    pub resume: Option<PathBuf>,
+    /// Stop after this time, and keep what is done
+    #[arg(long, value_name = "TIME", value_parser = duration, help_heading = "Parts")]
+    pub until: Option<Duration>,
 
     /// Width and height in pixels; a shape other than the scene's shows more of it, unless `--stretch` is given
     #[arg(long, value_name = "WxH", value_parser = size, help_heading = "Picture")]
@@ -300,6 +327,26 @@ pub struct ConvertArgs {
     pub reading: ReadingArgs,
 }
 
+/// Join parts of a picture that were rendered apart: the same bits as if it had been rendered at once
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  snell render scene.toml --spp 64 --samples 0:32 --part a.npz
+  snell render scene.toml --spp 64 --samples 32:64 --part b.npz
+  snell merge a.npz b.npz -o picture.png
+  snell merge part-1*.npz -o part-1.npz       some of many, into one part")]
+pub struct MergeArgs {
+    /// Parts (`snell render --part`, or checkpoints) of one picture, of which no sample is there twice
+    #[arg(required = true, value_name = "PART")]
+    pub parts: Vec<PathBuf>,
+    /// The picture (.png .ppm .exr .npy), which all parts together must cover; or a part (.npz)
+    #[arg(short, long, value_name = "FILE")]
+    pub output: PathBuf,
+    /// Say nothing but errors
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
 /// Compare two pictures; exit code 1 if they differ by more than the tolerance
 #[derive(Debug, Args)]
 #[command(after_help = "\
@@ -452,6 +499,30 @@ fn size(text: &str) -> Result<[u32; 2], String> {
     text.split_once(['x', 'X'])
         .and_then(|(w, h)| Some([side(w)?, side(h)?]))
         .ok_or_else(|| "expected width x height in pixels, at least 1, like 640x480".to_owned())
+}
+
+fn range(text: &str) -> Result<[u32; 2], String> {
+    let number = |text: &str| text.trim().parse::<u32>().ok();
+    text.split_once(':')
+        .and_then(|(first, end)| Some([number(first)?, number(end)?]))
+        .filter(|[first, end]| first < end)
+        .ok_or_else(|| "expected the first one and the one behind the last, like 0:512".to_owned())
+}
+
+fn duration(text: &str) -> Result<Duration, String> {
+    let expected = || "expected a number and s, m or h, like 30s".to_owned();
+    let text = text.trim();
+    let (number, unit) = text.split_at(text.len() - text.chars().next_back().map_or(0, char::len_utf8));
+    let seconds = match unit {
+        "s" => 1.0,
+        "m" => 60.0,
+        "h" => 3600.0,
+        _ => return Err(expected()),
+    };
+    let number: f64 = number.trim().parse().map_err(|_| expected())?;
+    // At most ten years, which clocks can count.
+    let seconds = number * seconds;
+    if (0.0..=3.2e8).contains(&seconds) { Ok(Duration::from_secs_f64(seconds)) } else { Err(expected()) }
 }
 
 fn crop(text: &str) -> Result<Crop, String> {

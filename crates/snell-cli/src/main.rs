@@ -21,6 +21,8 @@ mod excerpt;
 mod explain;
 mod info;
 mod input;
+mod kept;
+mod merge;
 mod output;
 mod paths;
 mod progress;
@@ -83,6 +85,7 @@ fn run(command: Command) -> Outcome {
         Command::Scenes(args) => scenes::run(&args),
         Command::Convert(args) => convert::run(&args),
         Command::Diff(args) => diff::run(&args),
+        Command::Merge(args) => merge::run(&args),
         Command::Check(args) => check::run(&args),
         Command::Schema { form } => say::print(&form.schema()),
         Command::Completions { shell } => {

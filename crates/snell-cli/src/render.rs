@@ -2,6 +2,7 @@
 
 use crate::args::{ProgressKind, RenderArgs};
 use crate::input::{self, what_is};
+use crate::kept;
 use crate::output::{self, beside, is_standard, refuse_inputs};
 use crate::paths;
 use crate::progress::{Phase, Reporter, short};
@@ -45,11 +46,16 @@ fn interrupt() {
 }
 
 pub fn run(args: &RenderArgs) -> Outcome {
-    let names: Vec<String> = match &args.from {
-        Some(from) => vec![from.display().to_string()],
+    let again = args.from.as_ref().or(args.resume.as_ref());
+    let names: Vec<String> = match again {
+        Some(again) => vec![again.display().to_string()],
         None => args.scenes.clone(),
     };
-    if args.from.is_none() {
+    if kept::is_asked(args) && names.len() > 1 {
+        let report = Report::error("--part and --checkpoint are of one picture");
+        return Err(Failure::new(USAGE, report.help("render the scenes with several commands")));
+    }
+    if again.is_none() {
         names.iter().try_for_each(|name| refuse_picture(name))?;
     }
     let outputs = outputs(args, &names)?;
@@ -91,7 +97,12 @@ fn quiet(mut reports: Vec<Report>, args: &RenderArgs) -> Vec<Report> {
 fn outputs(args: &RenderArgs, names: &[String]) -> Result<Vec<PathBuf>, Failure> {
     let ends_with_slash = |p: &Path| p.as_os_str().to_string_lossy().ends_with(['/', '\\']);
     let is_picture = |p: &Path| is_standard(p) || Format::of(p).is_ok();
+    if let Some(kept) = kept::file(args).filter(|kept| args.resume.as_deref() != Some(*kept)) {
+        refuse_inputs(kept, names.iter().map(Path::new))?;
+        disk::check_writable(kept).or_fail(FAILED)?;
+    }
     let outputs = match &args.output {
+        _ if args.part.is_some() => return Ok(args.part.iter().cloned().collect()),
         Some(path) if !path.is_dir() && !ends_with_slash(path) && (names.len() == 1 || is_picture(path)) => {
             let format = format(path, args)?;
             if names.len() > 1 {
@@ -150,7 +161,7 @@ fn in_folder(folder: &Path, args: &RenderArgs, names: &[String]) -> Result<Vec<P
 }
 
 /// Endings of what is rendered.
-const ENDINGS: &[&str] = &["txt", "toml", "json", "nff", "png", "exr"];
+const ENDINGS: &[&str] = &["txt", "toml", "json", "nff", "png", "exr", "npz"];
 
 /// The name of a scene without its folder and its ending. Only an ending that scene files have is cut off: `eta-1.05` is a whole
 /// name.
@@ -181,6 +192,9 @@ fn keep_all_inputs(args: &RenderArgs, names: &[String], outputs: &[PathBuf]) -> 
 /// Reads what is to be rendered, and how.
 fn read(name: &str, args: &RenderArgs) -> Result<(Recipe, Loaded), Failure> {
     let changes = Changes::from(args);
+    if let Some(path) = &args.resume {
+        return kept::resumed(path, &args.reading.search, &changes);
+    }
     if let Some(from) = &args.from {
         let (recipe, loaded, notes) = of_picture(from, &args.reading.search, &changes)?;
         for note in notes {
@@ -213,6 +227,9 @@ fn one(name: &str, args: &RenderArgs, output: &Path, inputs: &mut Vec<PathBuf>) 
     let read = loaded.files().chain([Path::new(&recipe.name)]).chain(input::standard(name));
     inputs.extend(read.map(Path::to_owned));
     refuse_inputs(output, inputs.iter().map(PathBuf::as_path))?;
+    if let Some(kept) = kept::file(args) {
+        refuse_inputs(kept, inputs.iter().map(PathBuf::as_path))?;
+    }
     let bounds = recipe.apply(loaded.scene_mut());
     recipe.resolve(&loaded.scene);
     let preparing = Phase::start(args.progress, args.quiet, "preparing", &recipe.name);
@@ -223,7 +240,7 @@ fn one(name: &str, args: &RenderArgs, output: &Path, inputs: &mut Vec<PathBuf>) 
     let widened = note.map(|note| Report::warning(WarningCode::WidenedBounds, note));
     let warnings: Vec<Report> = widened.into_iter().chain(loaded.warnings_with(world)).collect();
     warn(&warnings, args);
-    let format = format(output, args)?;
+    let format = if args.part.is_some() { Format::Npy } else { format(output, args)? };
     let format = if format == (Format::Png { sixteen_bit: false }) {
         Format::Png { sixteen_bit: recipe.bits == Some(16) }
     } else {
@@ -254,10 +271,20 @@ fn one(name: &str, args: &RenderArgs, output: &Path, inputs: &mut Vec<PathBuf>) 
         ..Options::default()
     };
     let settings = compiled.settings();
-    let rendered = render(world, &settings, &options).map_err(|e| {
-        let code = if matches!(e, RenderError::CropOutside { .. }) { USAGE } else { SCENE };
-        Failure::new(code, Report::error(e.to_string()))
-    })?;
+    let rendered = if kept::is_asked(args) {
+        let rendered = kept::render(&compiled, &settings, &recipe, args, &options);
+        RENDERING.store(false, Ordering::Relaxed);
+        reporter.finish();
+        match rendered? {
+            Some(rendered) => rendered,
+            None => return Ok(()),
+        }
+    } else {
+        render(world, &settings, &options).map_err(|e| {
+            let code = if matches!(e, RenderError::CropOutside { .. }) { USAGE } else { SCENE };
+            Failure::new(code, Report::error(e.to_string()))
+        })?
+    };
     let seconds = started.elapsed().as_secs_f64();
     reporter.finish();
     if !rendered.film.finished.contains(&true) {

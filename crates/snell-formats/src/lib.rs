@@ -42,6 +42,8 @@ pub mod memory;
 pub mod model;
 pub mod nff;
 pub mod page;
+#[cfg(feature = "disk")]
+pub mod part;
 pub mod picture;
 pub mod recipe;
 pub mod report;

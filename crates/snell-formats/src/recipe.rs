@@ -203,6 +203,31 @@ impl Recipe {
         serde_json::to_string(self).unwrap_or_default()
     }
 
+    /// The first thing that makes a picture of the other recipe another one; where files lie and how the picture is written is none.
+    pub fn difference(&self, other: &Self) -> Option<String> {
+        let of = |recipe: &Self| {
+            let values = serde_json::to_value(recipe).unwrap_or_default();
+            let mut values = values.as_object().cloned().unwrap_or_default();
+            let models: Vec<&String> = recipe.models.iter().map(|file| &file.sha256).collect();
+            values.insert("models".to_owned(), serde_json::json!(models));
+            let elsewhere = ["name", "folder", "search", "film_sha256", "transfer", "rounding", "bits"];
+            values.retain(|key, _| !elsewhere.contains(&key.as_str()));
+            values
+        };
+        let (a, b) = (of(self), of(other));
+        let key = a.keys().chain(b.keys()).find(|key| a.get(*key) != b.get(*key))?;
+        let line = |text: &str, at: usize| text.lines().nth(at).unwrap_or("nothing").trim().to_owned();
+        Some(if key == "text" {
+            let differs = |at: &usize| self.text.lines().nth(*at) != other.text.lines().nth(*at);
+            let at = (0..self.text.lines().count().max(other.text.lines().count())).find(differs).unwrap_or(0);
+            let (here, there) = (line(&self.text, at), line(&other.text, at));
+            format!("line {} of the scene is `{here}` in one and `{there}` in the other", at + 1)
+        } else {
+            let shown = |value: Option<&serde_json::Value>| value.map_or("nothing".to_owned(), ToString::to_string);
+            format!("`{key}` is {} in one and {} in the other", shown(a.get(key)), shown(b.get(key)))
+        })
+    }
+
     /// Notes the film that came out. One that is not finished tells nothing.
     pub fn remember(&mut self, film: &Film) {
         self.film_sha256 = film.is_finished().then(|| sha256(film.bytes()));

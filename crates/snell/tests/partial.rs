@@ -59,7 +59,7 @@ fn join(parts: &[&PartialFilm], size: [u32; 2], crop: Crop, tile_size: u32) -> R
 }
 
 fn assert_same(part: &PartialFilm, whole: &Rendered, spp: u32, what: &str) {
-    assert!(part.is_finished(spp), "{what}");
+    assert!(part.has(0..spp), "{what}");
     let film = part.film(spp).unwrap();
     assert!(film.is_finished() && film.pixels == whole.film.pixels, "{what}: other pixels");
     assert_eq!(part.statistics(), whole.statistics, "{what}");
@@ -76,7 +76,8 @@ fn any_rectangles_and_samples_make_the_whole() {
         for round in 0..4 {
             // The picture is cut along some columns and rows, and the samples of each part at some places.
             let cuts = |length: u32| {
-                let mut cuts: Vec<u32> = (0..chance.below(3)).map(|_| chance.below(length)).chain([0, length]).collect();
+                let mut cuts: Vec<u32> =
+                    (0..chance.below(3)).map(|_| chance.below(length)).chain([0, length]).collect();
                 cuts.sort_unstable();
                 cuts.dedup();
                 cuts
@@ -119,7 +120,7 @@ fn an_unfinished_render_goes_on_wherever_it_was_stopped() {
     let (size, all) = (world.camera.size, Crop { x: 0, y: 0, width: 37, height: 23 });
     let mut part = PartialFilm::new(size, all, Grid::new(all, 7, []));
     let mut stops = 0;
-    while !part.is_finished(6) {
+    while !part.has(0..6) {
         assert!(stops < 500, "{:?}", part.pieces());
         // Some are told that it is late, others are cancelled within a tile, after so many of them.
         let (cancel, calls) = (AtomicBool::new(false), AtomicU64::new(0));

@@ -1,7 +1,7 @@
 //! Pictures in and out.
 
 mod exr;
-mod npy;
+pub(crate) mod npy;
 mod png;
 mod ppm;
 

@@ -6,18 +6,19 @@ use std::io::Write;
 
 const MAGIC: &[u8] = b"\x93NUMPY";
 
-pub(super) fn write(out: &mut dyn Write, film: &Film) -> std::io::Result<()> {
-    let shape = format!("({}, {}, 3)", film.height(), film.width());
-    let mut header = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': {shape}, }}");
+/// How an array of this type and shape begins, as Python writes them: `<f8`, `(2, 3)`.
+pub(crate) fn beginning(descr: &str, shape: &str) -> Vec<u8> {
+    let mut header = format!("{{'descr': '{descr}', 'fortran_order': False, 'shape': {shape}, }}");
     // Padded with spaces so that the data starts at a multiple of 64.
     while !(MAGIC.len() + 4 + header.len() + 1).is_multiple_of(64) {
         header.push(' ');
     }
     header.push('\n');
-    out.write_all(MAGIC)?;
-    out.write_all(&[1, 0])?;
-    out.write_all(&(header.len() as u16).to_le_bytes())?;
-    out.write_all(header.as_bytes())?;
+    [MAGIC, &[1, 0], &(header.len() as u16).to_le_bytes(), header.as_bytes()].concat()
+}
+
+pub(super) fn write(out: &mut dyn Write, film: &Film) -> std::io::Result<()> {
+    out.write_all(&beginning("<f8", &format!("({}, {}, 3)", film.height(), film.width())))?;
     for (pixel, &done) in film.pixels.iter().zip(&film.finished) {
         for value in pixel.to_array() {
             out.write_all(&(if done { value } else { f64::NAN }).to_le_bytes())?;

@@ -119,10 +119,25 @@ impl RayCounts {
 pub struct LostLight {
     /// Rays that were not sent.
     pub rays: u64,
-    /// Sum of their throughput, in units of 2⁻³²: whole numbers add up to the same sum in any order.
+    /// Sum of their throughput, in units of 2⁻³²: whole numbers add up to the same sum in any order. JSON has no numbers of this size.
+    #[cfg_attr(feature = "serde", serde(with = "as_text"))]
     sum: u128,
     /// The worst pixel's sum over all of its samples, in the same units, and its number in row order.
     worst: (u64, u64),
+}
+
+#[cfg(feature = "serde")]
+mod as_text {
+    use alloc::string::{String, ToString};
+    use serde::{Deserialize, Deserializer, Serializer, de::Error};
+
+    pub fn serialize<S: Serializer>(sum: &u128, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(&sum.to_string())
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u128, D::Error> {
+        String::deserialize(deserializer)?.parse().map_err(D::Error::custom)
+    }
 }
 
 const UNIT: f64 = (1u64 << 32) as f64;
@@ -145,6 +160,19 @@ impl LostLight {
         let mut lost = Self { worst: (0, 0), ..self };
         pixels.for_each(|(pixel, units)| lost.offer_worst((units, pixel)));
         lost
+    }
+
+    /// The one of the two whose worst pixel is worse; of equally bad ones that of the first pixel.
+    pub fn or_worse(mut self, other: &Self) -> Self {
+        if other.worst.0 > 0 {
+            self.offer_worst(other.worst);
+        }
+        self
+    }
+
+    /// The same, with the worst pixel of another.
+    pub fn with_worst(self, other: &Self) -> Self {
+        Self { worst: other.worst, ..self }
     }
 
     fn offer_worst(&mut self, (sum, pixel): (u64, u64)) {

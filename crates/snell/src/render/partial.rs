@@ -86,11 +86,29 @@ impl Grid {
 
     /// The cells, row by row.
     pub fn cells(&self) -> impl Iterator<Item = Crop> + '_ {
-        let row = |y: &[u32]| {
-            let (y, height) = (y[0], y[1] - y[0]);
-            self.x.windows(2).map(move |x| Crop { x: x[0], y, width: x[1] - x[0], height })
+        (0..self.columns() * (self.y.len() - 1)).map(|number| self.cell(number))
+    }
+
+    /// The rows at which it is cut, from its first to behind its last one.
+    pub fn rows(&self) -> &[u32] {
+        &self.y
+    }
+
+    /// The cells that lie within a rectangle, by their numbers, row by row.
+    pub fn within(&self, rect: Crop) -> impl Iterator<Item = usize> + use<> {
+        let some = |edges: &[u32], start: u32, length: u32| {
+            let first = edges.partition_point(|&edge| edge < start);
+            let end = edges.partition_point(|&edge| edge <= start.saturating_add(length));
+            first..end.saturating_sub(1).max(first)
         };
-        self.y.windows(2).flat_map(row)
+        let (columns, x) = (self.columns(), some(&self.x, rect.x, rect.width));
+        some(&self.y, rect.y, rect.height).flat_map(move |row| x.clone().map(move |column| row * columns + column))
+    }
+
+    fn cell(&self, number: usize) -> Crop {
+        let (column, row) = (number % self.columns(), number / self.columns());
+        let (x, y) = (self.x[column], self.y[row]);
+        Crop { x, y, width: self.x[column + 1] - x, height: self.y[row + 1] - y }
     }
 
     /// Neighbouring cells of which the same is true, as rectangles: first the neighbours in a row, then equal ones below each other.
@@ -208,12 +226,8 @@ impl PartialFilm {
     /// When some of them are there already; some cells may have been changed then.
     pub fn insert(&mut self, piece: &Piece, sums: &[Rgb], lost: &[u64]) -> Result<(), Twice> {
         let (rect, blocks) = (piece.rect, piece.blocks());
-        let cells: Vec<Crop> = self.grid.cells().collect();
-        for (cell, at) in self.cells.iter_mut().zip(cells) {
-            let inside = |start: u32, length: u32, first: u32, have: u32| start >= first && start + length <= first + have;
-            if !inside(at.x, at.width, rect.x, rect.width) || !inside(at.y, at.height, rect.y, rect.height) {
-                continue;
-            }
+        for number in self.grid.within(rect) {
+            let (at, cell) = (self.grid.cell(number), &mut self.cells[number]);
             let count = at.width as usize * at.height as usize;
             let mut planes: Vec<(Block, Vec<Rgb>)> =
                 blocks.iter().map(|&block| (block, Vec::with_capacity(count))).collect();
@@ -286,9 +300,9 @@ impl PartialFilm {
         Statistics { lost, ..self.statistics.clone() }
     }
 
-    /// Are the first `spp` samples of all pixels there?
-    pub fn is_finished(&self, spp: u32) -> bool {
-        self.cells.iter().all(|cell| missing(0..spp, &cell.samples()).is_empty())
+    /// Are these samples of all pixels there?
+    pub fn has(&self, samples: Range<u32>) -> bool {
+        self.cells.iter().all(|cell| missing(samples.clone(), &cell.samples()).is_empty())
     }
 
     /// The picture; pixels of which not the first `spp` samples are there, and no others, are black and unfinished.
