@@ -140,6 +140,9 @@ fn what_is_cut_off_or_changed_is_refused() {
     assert!(PartFile::open(&path).is_err() && PartFile::open(Path::new("nowhere.npz")).is_err());
 }
 
+/// A change of a header, and why it is refused.
+type Change<'a> = (&'a dyn Fn(&mut Header), &'a str);
+
 #[test]
 fn headers_that_cannot_be_are_refused() {
     let (made, folder) = (Made::new(&[]), tempfile::tempdir().unwrap());
@@ -168,7 +171,6 @@ fn headers_that_cannot_be_are_refused() {
         PartFile::open(&path).map(drop).map_err(|report| report.message)
     };
     assert!(refused(&|_| {}).is_ok());
-    type Change<'a> = (&'a dyn Fn(&mut Header), &'a str);
     let changes: [Change<'_>; 9] = [
         (&|h| h.snell_part = 2, "of version 2, and this Snell reads 1"),
         (&|h| h.size = [40, 36], "does not lie within"),
