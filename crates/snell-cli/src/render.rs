@@ -101,6 +101,9 @@ fn outputs(args: &RenderArgs, names: &[String]) -> Result<Vec<PathBuf>, Failure>
         refuse_inputs(kept, names.iter().map(Path::new))?;
         disk::check_writable(kept).or_fail(FAILED)?;
     }
+    if let Some(checkpoint) = &args.checkpoint {
+        refuse_work(checkpoint, args)?;
+    }
     let outputs = match &args.output {
         _ if args.part.is_some() => return Ok(args.part.iter().cloned().collect()),
         Some(path) if !path.is_dir() && !ends_with_slash(path) && (names.len() == 1 || is_picture(path)) => {
@@ -122,6 +125,21 @@ fn outputs(args: &RenderArgs, names: &[String]) -> Result<Vec<PathBuf>, Failure>
         disk::check_writable(output).or_fail(FAILED)?;
     }
     Ok(outputs)
+}
+
+/// Refuses to begin anew over a checkpoint, which may be the work of hours.
+fn refuse_work(checkpoint: &Path, args: &RenderArgs) -> Outcome {
+    let shown = checkpoint.display();
+    if args.output.as_deref() == Some(checkpoint) {
+        let report = Report::error(format!("`{shown}` cannot be both the checkpoint and the picture"));
+        return Err(Failure::new(USAGE, report.help("name two files")));
+    }
+    if checkpoint.is_file() && args.resume.as_deref() != Some(checkpoint) {
+        let report = Report::error(format!("the checkpoint `{shown}` is there already"));
+        let help = format!("go on with it: snell render --resume {shown}; or remove it, or name another file");
+        return Err(Failure::new(USAGE, report.help(help)));
+    }
+    Ok(())
 }
 
 /// Which format a picture gets.

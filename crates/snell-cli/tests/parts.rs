@@ -79,6 +79,18 @@ fn a_render_goes_on_as_it_was_begun() {
     let stopped = snell(at, &[RENDER, &["--checkpoint", "k.npz", "--until", "0.1s", "-o", "p.png"]].concat());
     assert!(stopped.status.code() == Some(130) && !at.join("p.png").exists(), "{}", stderr(&stopped));
     let half = bytes(at, "k.npz");
+    refused(
+        at,
+        &[RENDER, &["--checkpoint", "k.npz", "-o", "p.png"]].concat(),
+        2,
+        "the checkpoint `k.npz` is there already",
+    );
+    refused(
+        at,
+        &[RENDER, &["--checkpoint", "p.png", "-o", "p.png"]].concat(),
+        2,
+        "both the checkpoint and the picture",
+    );
     refused(at, &["render", "--resume", "k.npz", "--depth", "3", "-o", "p.png"], 2, "goes on as it was begun");
     refused(at, &["render", "--resume", "nowhere.npz", "-o", "p.png"], 1, "there is no file `nowhere.npz`");
     let scene = fs::read_to_string(at.join("scene.toml")).unwrap();
