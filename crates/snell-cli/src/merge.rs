@@ -44,10 +44,11 @@ pub fn run(args: &MergeArgs) -> Outcome {
     say(
         args,
         &format!(
-            "{}: {} x {} from {count} parts, {} rays, film {}",
+            "{}: {} x {} from {}, {} rays, film {}",
             args.output.display(),
             film.crop.width,
             film.crop.height,
+            if count == 1 { "one part".to_owned() } else { format!("{count} parts") },
             statistics.rays.total(),
             short_hash(hash)
         ),

@@ -14,6 +14,8 @@ pub enum Given {
     Materials,
     /// A picture that Snell reads.
     Picture(picture::Format),
+    /// Sums of samples of a picture.
+    Part,
     /// Something known that Snell does not read, and what to do with it.
     Foreign(&'static str, &'static str),
     /// A text; whether it is a scene shows when it is read.
@@ -74,6 +76,10 @@ pub fn given_file(path: &Path) -> Given {
 
 /// What a file of this name with these bytes is.
 pub fn given(path: &Path, bytes: &[u8]) -> Given {
+    // The name of the first file of an archive stands behind 30 bytes.
+    if bytes.starts_with(b"PK\x03\x04") && bytes.get(30..).is_some_and(|name| name.starts_with(b"sums.npy")) {
+        return Given::Part;
+    }
     if let Some((_, known)) = MAGIC.iter().find(|(magic, _)| bytes.starts_with(magic)) {
         return *known;
     }
@@ -151,6 +157,7 @@ impl Given {
                 .remedy(Remedy::CheckModel(shown.to_owned())),
             Self::Materials => report.help("name the model that uses it in a scene"),
             Self::Picture(_) => report.remedy(Remedy::MakeAgain(shown.to_owned())),
+            Self::Part => report.help("join it with the other parts of its picture, or go on with its render"),
             Self::Foreign(_, help) => with_help(report, help),
             Self::Bytes => report.help("scenes are text files: TOML, JSON, drivers of the course, or NFF"),
         })
@@ -169,6 +176,7 @@ impl Given {
             Self::Picture(format) => Some(format.words()),
             Self::Foreign(what, _) => Some(what),
             Self::Materials => Some("a library of materials"),
+            Self::Part => Some("a part of a picture"),
             Self::Text | Self::Bytes => None,
         }
     }
@@ -192,6 +200,8 @@ mod tests {
             ("a.glb", b"glTF\x02\0\0\0", "a glTF model"),
             ("a.bin", &[0, 1, 2, 200], "is binary data"),
             ("a", b"P6 1 1 255 \0\0\0", "a PPM picture"),
+            ("a", b"PK\x03\x04..........................sums.npy", "a part of a picture"),
+            ("a", b"PK\x03\x04..........................else.npy", "a ZIP archive"),
             ("a.xml", b"<scene/>", "an XML file"),
         ] {
             let report = given(Path::new(name), bytes).no_scene(name).unwrap();

@@ -256,9 +256,11 @@ impl Merge {
 fn same_picture(a: &PartFile, b: &PartFile) -> Result<(), Report> {
     let (first, other) = (a.header(), b.header());
     let what = if first.size != other.size {
-        Some(format!("size is {:?} in one and {:?} in the other", first.size, other.size))
+        let [a, b] = [first.size, other.size].map(|[width, height]| format!("{width} x {height}"));
+        Some(format!("its size is {a} in one and {b} in the other"))
     } else if first.crop != other.crop {
-        Some(format!("the part of the picture is {:?} in one and {:?} in the other", first.crop, other.crop))
+        let words = |crop: Crop| format!("{} x {} pixels at {},{}", crop.width, crop.height, crop.x, crop.y);
+        Some(format!("it is of {} in one and of {} in the other", words(first.crop), words(other.crop)))
     } else {
         first.recipe.difference(&other.recipe)
     };
