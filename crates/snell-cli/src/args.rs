@@ -98,9 +98,9 @@ pub struct RenderArgs {
     /// Keep what is done in this file while it renders, and when it is stopped
     #[arg(long, value_name = "FILE.npz", conflicts_with_all = ["part", "paths", "only"], help_heading = "Parts")]
     pub checkpoint: Option<PathBuf>,
-    /// How often: 30s, 10m, 2h
-    #[arg(long, value_name = "TIME", default_value = "30s", value_parser = duration, help_heading = "Parts")]
-    pub every: Duration,
+    /// How often: 30s (default), 10m, 2h
+    #[arg(long, value_name = "TIME", value_parser = duration, help_heading = "Parts")]
+    pub every: Option<Duration>,
     /// Go on with a checkpoint or a part, and keep what is done in it; with a larger --spp, add samples
     #[arg(long, value_name = "FILE.npz", conflicts_with_all = ["scenes", "from", "part", "dialect", "paths", "only"], help_heading = "Parts")]
     pub resume: Option<PathBuf>,

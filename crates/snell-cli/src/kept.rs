@@ -21,6 +21,9 @@ pub fn is_asked(args: &RenderArgs) -> bool {
     args.part.is_some() || args.checkpoint.is_some() || args.resume.is_some()
 }
 
+/// How often it is kept, if nobody says.
+const EVERY: Duration = Duration::from_secs(30);
+
 /// The file that is kept, if there is one.
 pub fn file(args: &RenderArgs) -> Option<&Path> {
     [&args.part, &args.checkpoint, &args.resume].into_iter().flatten().next().map(PathBuf::as_path)
@@ -85,7 +88,7 @@ pub fn render(
     let last = args.until.map(|until| started + until);
     let (mut writing, mut written) = (Duration::ZERO, 0u32);
     loop {
-        let next = Instant::now() + args.every;
+        let next = Instant::now() + args.every.unwrap_or(EVERY);
         let until = if file.is_some() { Some(last.map_or(next, |last| last.min(next))) } else { last };
         film.render(compiled.world(), settings, first..end, options, until).map_err(of_render)?;
         let is_cancelled = options.cancel.is_some_and(|cancel| cancel.load(Ordering::Relaxed));
@@ -98,7 +101,7 @@ pub fn render(
                 Err(report) if is_cancelled || is_late || is_done && args.part.is_some() => {
                     return Err(Failure::new(FAILED, rescue(report, file, recipe, size, &film)));
                 }
-                Err(report) => tell(&format!("warning: {report}; what was kept before stays, and the render goes on")),
+                Err(report) => not_kept(&report, args),
             }
             writing += at.elapsed();
         }
@@ -152,6 +155,10 @@ fn begun(size: [u32; 2], recipe: &Recipe, args: &RenderArgs) -> Result<PartialFi
     }
     let Some(path) = &args.resume else { return Ok(PartialFilm::new(size, crop, Grid::new(crop, args.tile, []))) };
     let mut part = PartFile::open(path).or_fail(FAILED)?;
+    if (part.header().size, part.header().crop) != (size, crop) {
+        let message = format!("`{}` is not of the picture that its recipe makes", path.display());
+        return Err(Failure::new(FAILED, Report::error(message).help("render it anew")));
+    }
     let pieces = part.header().pieces.clone();
     let grid = Grid::new(crop, args.tile, pieces.iter().map(|piece| piece.rect));
     let mut film = PartialFilm::new(size, crop, grid);
@@ -168,6 +175,15 @@ fn begun(size: [u32; 2], recipe: &Recipe, args: &RenderArgs) -> Result<PartialFi
 fn keep(file: &Path, recipe: &Recipe, size: [u32; 2], film: &PartialFilm) -> Result<(), Report> {
     let header = Header::new(recipe, size, film.pieces(), film.statistics());
     disk::write(file, |out| part::write(out, &header, film))
+}
+
+/// Says that the disk is full, or what else it is.
+fn not_kept(report: &Report, args: &RenderArgs) {
+    let message = format!("{report}; what was kept before stays, and the render goes on");
+    tell(&match args.progress {
+        ProgressKind::Json => json!({ "event": "note", "message": message }).to_string(),
+        ProgressKind::Auto => format!("warning: {message}"),
+    });
 }
 
 /// Keeps elsewhere what cannot be kept where it should be, if possible, so that no work is lost.
@@ -191,7 +207,7 @@ fn stopped(film: &PartialFilm, settings: &Settings, file: Option<&Path>, args: &
     let share = done as f64 / all.max(1) as f64;
     if args.progress == ProgressKind::Json {
         tell(&json!({ "event": "interrupted", "file": file, "share": share }).to_string());
-    } else if let Some(file) = file {
+    } else if let Some(file) = file.filter(|_| !args.quiet) {
         let percent = 100.0 * share;
         let shown = file.display();
         tell(&format!(

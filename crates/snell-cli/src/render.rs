@@ -51,6 +51,10 @@ pub fn run(args: &RenderArgs) -> Outcome {
         Some(again) => vec![again.display().to_string()],
         None => args.scenes.clone(),
     };
+    if !kept::is_asked(args) && (args.until.is_some() || args.every.is_some()) {
+        let report = Report::error("--until and --every need a file that keeps what is done");
+        return Err(Failure::new(USAGE, report.help("name one, like --checkpoint work.npz")));
+    }
     if kept::is_asked(args) && names.len() > 1 {
         let report = Report::error("--part and --checkpoint are of one picture");
         return Err(Failure::new(USAGE, report.help("render the scenes with several commands")));

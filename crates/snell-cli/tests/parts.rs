@@ -92,6 +92,7 @@ fn a_render_goes_on_as_it_was_begun() {
         "both the checkpoint and the picture",
     );
     refused(at, &["render", "--resume", "k.npz", "--depth", "3", "-o", "p.png"], 2, "goes on as it was begun");
+    refused(at, &[RENDER, &["--until", "1h", "-o", "p.png"]].concat(), 2, "need a file that keeps what is done");
     refused(at, &["render", "--resume", "nowhere.npz", "-o", "p.png"], 1, "there is no file `nowhere.npz`");
     let scene = fs::read_to_string(at.join("scene.toml")).unwrap();
     fs::write(at.join("scene.toml"), scene.replace("eta = ", "eta = 1")).unwrap();

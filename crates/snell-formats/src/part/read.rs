@@ -151,8 +151,8 @@ fn check(header: &Header) -> Result<[u64; 2], String> {
         }
         let mut from = 0;
         for (number, &[first, end]) in piece.samples.iter().enumerate() {
-            if first >= end || end > MAX_SPP || first < from || (number > 0 && first == from) {
-                return Err(format!("part.json: {:?} are no ranges of samples in order", piece.samples));
+            if first >= end || end > *spp || first < from || (number > 0 && first == from) {
+                return Err(format!("part.json: {:?} are no ranges of {spp} samples in order", piece.samples));
             }
             from = end;
         }

@@ -171,15 +171,16 @@ fn headers_that_cannot_be_are_refused() {
         PartFile::open(&path).map(drop).map_err(|report| report.message)
     };
     assert!(refused(&|_| {}).is_ok());
-    let changes: [Change<'_>; 9] = [
+    let changes: [Change<'_>; 10] = [
         (&|h| h.snell_part = 2, "of version 2, and this Snell reads 1"),
         (&|h| h.size = [40, 36], "does not lie within"),
         (&|h| h.spp = 0, "samples per pixel"),
         (&|h| h.pieces[0].rect.height = 3, "bytes, and"),
         (&|h| h.pieces[0].rect.x = u32::MAX, "does not lie within"),
         (&|h| h.pieces[0].samples = vec![[0, 3]], "bytes, and"),
-        (&|h| h.pieces[0].samples = vec![[1, 2], [0, 1]], "no ranges of samples"),
-        (&|h| h.pieces[0].samples = vec![[2, 2]], "no ranges of samples"),
+        (&|h| h.pieces[0].samples = vec![[1, 2], [0, 1]], "no ranges of 6 samples"),
+        (&|h| h.pieces[0].samples = vec![[2, 2]], "no ranges of 6 samples"),
+        (&|h| h.pieces[0].samples = vec![[0, 7]], "no ranges of 6 samples"),
         (&|h| h.pieces[0].samples = vec![], "without samples"),
     ];
     for (change, why) in changes {

@@ -1,6 +1,7 @@
 //! Pictures of which some samples are there: what machines that share the work hand to each other, and what is kept of an
 //! unfinished render.
 
+use super::spread::Spread;
 use super::{Options, Progress, RenderError, Settings};
 use crate::color::Rgb;
 use crate::film::{Crop, Film, FilmTooLarge};
@@ -15,8 +16,6 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
-
-use super::spread::Spread;
 
 /// A rectangle of pixels of which the same samples are there.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -259,13 +258,11 @@ impl PartialFilm {
     /// The cells of a row of pixels of a piece, and which row of each it is.
     fn cells_of_row(&self, rect: Crop, y: u32) -> impl Iterator<Item = (&Cell, usize, Crop)> {
         let row = self.grid.y.partition_point(|&edge| edge <= y) - 1;
-        let columns = self.grid.columns();
         let (top, height) = (self.grid.y[row], self.grid.y[row + 1] - self.grid.y[row]);
-        (0..columns).filter_map(move |column| {
-            let (x, end) = (self.grid.x[column], self.grid.x[column + 1]);
-            let inside = x >= rect.x && end <= rect.x + rect.width;
-            let at = Crop { x, y: top, width: end - x, height };
-            inside.then(|| (&self.cells[row * columns + column], (y - top) as usize, at))
+        let of_row = Crop { y: top, height, ..rect };
+        self.grid.within(of_row).map(move |number| {
+            let at = self.grid.cell(number);
+            (&self.cells[number], (y - at.y) as usize, at)
         })
     }
 
