@@ -16,6 +16,7 @@ from .errors import OpticsError, PictureError, RenderError, SceneError, SnellErr
 from .movie.frames import Sweep
 from .notebook.interact import Interactive, interact
 from .notebook.view import View
+from .part import Part
 from .parts import Box, Camera, Disc, Globe, Lathe, Light, Material, Mesh, Plane, Render, Sky, Sphere, Texture
 from .picture import Difference, Picture, Sightings
 from .scene import Scene, scenes
@@ -24,7 +25,7 @@ from .tree import Figure, Hit, LightAtHit, Local, Node, RayTree, Sample
 
 __all__ = [
     "Box", "Camera", "Channels", "Difference", "Disc", "Figure", "Globe", "Hit", "Interactive", "Lathe", "Light",
-    "LightAtHit", "Local", "Material", "Mesh", "Node", "OpticsError", "Picture", "PictureError", "Plane", "RayTree",
-    "Render", "RenderError", "Sample", "Scene", "SceneError", "Sightings", "Sky", "SnellError", "SnellWarning",
-    "Sphere", "Sweep", "Texture", "View", "__version__", "interact", "optics", "scenes", "sweep",
+    "LightAtHit", "Local", "Material", "Mesh", "Node", "OpticsError", "Part", "Picture", "PictureError", "Plane",
+    "RayTree", "Render", "RenderError", "Sample", "Scene", "SceneError", "Sightings", "Sky", "SnellError",
+    "SnellWarning", "Sphere", "Sweep", "Texture", "View", "__version__", "interact", "optics", "scenes", "sweep",
 ]  # fmt: skip

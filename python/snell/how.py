@@ -103,6 +103,17 @@ def region(how: Mapping[str, Any]) -> Region | None:
     return left, top, width, height
 
 
+def range_of(value: object, place: str) -> tuple[int, int] | None:
+    """Return the first number of a range, and the one behind its last; None for all."""
+    if value is None:
+        return None
+    numbers = [whole(n, place, SceneError) for n in value] if isinstance(value, Collection) else []
+    if len(numbers) != 2 or not all(0 <= number < 2**32 for number in numbers):
+        message = f"expected the first number and the one behind the last, read {value!r}"
+        raise SceneError([(place, message, "like (0, 64)")])
+    return numbers[0], numbers[1]
+
+
 def threads(how: Mapping[str, Any]) -> int:
     """Return the number of threads; 0 for as many as the machine has."""
     number = how.get("threads", 0)

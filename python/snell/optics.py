@@ -44,7 +44,9 @@ def _columns(f: Callable[..., Floats], **values: ArrayLike) -> Any:
         columns = np.broadcast_arrays(*arrays)
     except ValueError as error:
         raise OpticsError([(", ".join(values), str(error), None)]) from error
-    result = f(*(np.ascontiguousarray(column).reshape(-1) for column in columns)).reshape(columns[0].shape)
+    result = f(*(np.require(column, requirements=["C", "A"]).reshape(-1) for column in columns)).reshape(
+        columns[0].shape
+    )
     return result if result.ndim else float(result)
 
 

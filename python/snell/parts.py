@@ -297,7 +297,8 @@ class Mesh(Value):
 def _rows(value: ArrayLike | None, place: str) -> NDArray[np.float64]:
     """Return rows of three numbers."""
     try:
-        rows = np.ascontiguousarray(() if value is None else value, dtype=np.float64)
+        # Aligned, too: arrays that come over a network (pickle, Dask) may lie anywhere.
+        rows = np.require(() if value is None else value, np.float64, ["C", "A"])
     except (TypeError, ValueError) as error:
         raise SceneError([(place, f"expected rows of three numbers: {error}", None)]) from error
     if rows.size == 0:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import json
 import os
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -14,6 +14,7 @@ from . import _native
 from . import how as how_of
 from .errors import Finding, PictureError, SceneError, warn
 from .how import How, Settings
+from .part import Part, joinable
 from .parts import Box, Camera, Disc, Lathe, Light, Material, Mesh, Plane, Render, Sky, Sphere, Texture
 from .picture import Picture, Sightings, no_pixel
 from .progress import watcher
@@ -315,6 +316,8 @@ class Scene(Value):
         shadows: str | None = None,
         threads: int = 0,
         progress: bool | Callable[[int, int, int], object] = True,
+        client: object = None,
+        task_seconds: float = 4.0,
     ) -> Picture:
         """Render the picture. Python's lock is free meanwhile, and the scene may be changed.
 
@@ -344,13 +347,19 @@ class Scene(Value):
         progress : bool or callable
             By default a bar, on a terminal and in notebooks, for what takes longer; False for none; or what is called
             with pixels done, pixels in all, and rays.
+        client : distributed.Client, optional
+            Render on the workers of this Dask cluster, to the same bits: each runs as many tasks as it has threads.
+            Notebooks show what has come back. It needs ``pip install "snell[cluster]"``.
+        task_seconds : float
+            With a `client`: how long a task should take, in seconds, by what it measures; by default 4. Tasks that are
+            longer cost less to hand out, and more if a worker is lost.
 
         Raises
         ------
         SceneError
             Naming the field or the parameter that is wrong.
         RenderError
-            If the picture does not fit into memory.
+            If the picture does not fit into memory, or a cluster gives up.
 
         Examples
         --------
@@ -363,7 +372,78 @@ class Scene(Value):
         """
         how: How = {"width": width, "height": height, "crop": crop, "spp": spp, "depth": depth, "seed": seed,
                     "integrator": integrator, "shadows": shadows, "threads": threads}  # fmt: skip
-        return warned_if_stopped(self._rendered(set(), progress, how))
+        if client is None:
+            return warned_if_stopped(self._rendered(set(), progress, how))
+        if threads != 0:
+            message = f"a task of a cluster has one thread, read {threads!r}"
+            raise SceneError([("threads", message, "the workers say how many tasks they run at a time")])
+        from .cluster.engine import Cluster  # noqa: PLC0415 # Dask is not needed otherwise
+        from .cluster.pictures import render  # noqa: PLC0415 # Dask is not needed otherwise
+
+        cluster = Cluster(client, task_seconds)
+        world, region = self._compiled(how), how_of.region(how)
+        known: set[Finding] = set()
+        warn_of(world.warnings(), known)
+        native = render(world, self.name, region, progress, cluster)
+        return warned_if_stopped(pictured(native, self.name, known))
+
+    def render_part(
+        self,
+        *,
+        rows: Sequence[int] | None = None,
+        samples: Sequence[int] | None = None,
+        progress: bool | Callable[[int, int, int], object] = True,
+        **how: Unpack[How],
+    ) -> Part:
+        """Render some samples of some rows, for `merge`: in any process, on any machine.
+
+        ^C ends it with KeyboardInterrupt.
+
+        Parameters
+        ----------
+        rows : (2,) of int, optional
+            The first row, and the one behind the last, in the whole picture; by default all.
+        samples : (2,) of int, optional
+            The first sample of each pixel, and the one behind the last; by default all that ``spp`` says.
+        progress, **how
+            What `render` takes: width, height, crop, spp, depth, seed, integrator, shadows, threads.
+
+        Raises
+        ------
+        SceneError
+            Naming the field or the parameter that is wrong.
+
+        Examples
+        --------
+        >>> Scene.load("lecture/default").render_part(rows=(0, 8), samples=(2, 4), width=64, spp=4)
+        <Part: rows 0 to 7, samples 2 to 3>
+        """
+        said = how_of.said(how, How)
+        world, region, threads = self._compiled(said), how_of.region(said), how_of.threads(said)
+        warn_of(world.warnings(), set())
+        of_rows, of_samples = how_of.range_of(rows, "rows"), how_of.range_of(samples, "samples")
+        with watcher(progress, self.name) as watch:
+            return Part(world.render_part(threads, region, of_rows, of_samples, watch), said)
+
+    def merge(self, parts: Iterable[Part]) -> Picture:
+        """Return the picture that parts make, to the bits of `render`.
+
+        Parameters
+        ----------
+        parts : iterable of Part
+            Of this scene, made with the same settings; in any order.
+
+        Raises
+        ------
+        PictureError
+            If something is missing, is there twice, or is of another picture.
+        """
+        native, how = joinable(parts)
+        world, region = self._compiled(how), how_of.region(how)
+        known: set[Finding] = set()
+        warn_of(world.warnings(), known)
+        seconds = sum(part.seconds for part in native)
+        return pictured(world.merge(region, native, False, seconds), self.name, known)
 
     def view(
         self,
@@ -457,7 +537,7 @@ class Scene(Value):
         if not isinstance(name, str):
             raise SceneError([("name", f"expected the name of an object, read {name!r}", None)])
         world = self._compiled(how_of.said(settings, Settings))
-        _warn(world.warnings(), set())
+        warn_of(world.warnings(), set())
         with watcher(progress, self.name) as watch:
             paths, mask = world.find(name, watch)
         return Sightings(paths, mask)
@@ -503,16 +583,21 @@ def picture_of(
     how: Mapping[str, Any],
 ) -> Picture:
     """Render what is compiled, and warn of what is not known yet."""
-    _warn(world.warnings(), known)
+    warn_of(world.warnings(), known)
     with watcher(progress, name) as watch:
-        picture = Picture(world.render(how_of.threads(how), how_of.region(how), watch), name)
+        return pictured(world.render(how_of.threads(how), how_of.region(how), watch), name, known)
+
+
+def pictured(native: _native.NativePicture, name: str, known: set[Finding]) -> Picture:
+    """Return a picture, and warn of what is odd about it and not known yet."""
+    picture = Picture(native, name)
     # Lost light is nothing odd: every hall of mirrors has some.
     found = [text for code, text in picture._native.warnings() if code not in _REMARKS]
-    _warn([(None, text, None) for text in found], known)
+    warn_of([(None, text, None) for text in found], known)
     return picture
 
 
-def _warn(findings: Sequence[Finding], known: set[Finding]) -> None:
+def warn_of(findings: Sequence[Finding], known: set[Finding]) -> None:
     """Warn of what is not known yet."""
     for finding in findings:
         if finding not in known:

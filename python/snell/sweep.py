@@ -6,19 +6,20 @@ import hashlib
 import json
 import os
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from . import how as how_of
-from ._native import __version__
+from ._native import NativeWorld, __version__
 from .errors import Finding, PictureError, SceneError
 from .files import replacing
 from .how import How
 from .movie import png
 from .movie.frames import Sweep
+from .picture import Picture
 from .progress import Note, Watch, watcher
-from .scene import Scene
+from .scene import Scene, pictured, warn_of
 from .values import plain
 
 if TYPE_CHECKING:
@@ -34,6 +35,8 @@ def sweep(
     out: str | os.PathLike[str],
     *,
     progress: bool | Watch = True,
+    client: object = None,
+    task_seconds: float = 4.0,
     **how: Unpack[How],
 ) -> Sweep:
     """Render a frame for each step of some values, and skip what is done already.
@@ -52,6 +55,9 @@ def sweep(
         The folder of the frames, ``0000.png`` and so on; it is made if need be.
     progress : bool or callable
         A bar over all frames; or what is called with the pixels of all frames that are done, that there are, and rays.
+    client, task_seconds : distributed.Client, float, optional
+        Render on a Dask cluster, as for `Scene.render`. Frames that are quick are one task each; the folder is this
+        machine's.
     **how
         What else `Scene.render` takes: width, height, crop, spp, depth, seed, integrator, shadows, threads.
 
@@ -107,20 +113,66 @@ def sweep(
     known: set[Finding] = set()
     done, rays = len(frames) - len(missing), 0
     with watcher(progress, scene.name, _note(len(frames), done)) as watch:
-        for index in missing:
-            within = watch and _within(watch, done, len(frames), rays)
-            picture = changed(index)._rendered(known, within or False, said)
-            if not picture.finished:
-                raise KeyboardInterrupt
+
+        def within(pixels: int, total: int, more: int) -> None:
+            if watch:
+                watch(done * total + pixels, len(frames) * total, rays + more)
+
+        drawn = (
+            _one_by_one((missing, changed), known, within if watch else None, said)
+            if client is None
+            else _on_cluster((missing, changed), known, within, said, (client, task_seconds))
+        )
+        for index, picture in drawn:
             picture.save(frames[index])
             notes[frames[index].name] = made_of[index]
             with replacing(folder / _NOTES) as beside:  # a note that is half written would cost all frames
                 beside.write_text(json.dumps(notes))
             done, rays = done + 1, rays + picture.rays
-            if watch:
-                pixels = picture.width * picture.height
-                watch(done * pixels, len(frames) * pixels, rays)
+            within(0, picture.width * picture.height, 0)
     return Sweep(frames, columns)
+
+
+def _one_by_one(
+    frames: tuple[Sequence[int], Callable[[int], Scene]],
+    known: set[Finding],
+    watch: Watch | None,
+    said: Mapping[str, Any],
+) -> Iterator[tuple[int, Picture]]:
+    """Render frames here."""
+    missing, changed = frames
+    for index in missing:
+        picture = changed(index)._rendered(known, watch or False, said)
+        if not picture.finished:
+            raise KeyboardInterrupt
+        yield index, picture
+
+
+def _on_cluster(
+    frames: tuple[Sequence[int], Callable[[int], Scene]],
+    known: set[Finding],
+    watch: Watch,
+    said: Mapping[str, Any],
+    cluster: tuple[object, float],
+) -> Iterator[tuple[int, Picture]]:
+    """Render frames on a cluster, in the order in which they are done."""
+    from .cluster.engine import Cluster  # noqa: PLC0415 # Dask is not needed otherwise
+    from .cluster.pictures import render_all  # noqa: PLC0415 # Dask is not needed otherwise
+
+    if how_of.threads(said) != 0:
+        raise SceneError([("threads", "a task of a cluster has one thread", "leave it out")])
+    (missing, changed), names = frames, dict[int, str]()
+
+    def worlds() -> Iterator[tuple[int, NativeWorld]]:
+        for index in missing:
+            frame = changed(index)
+            names[index] = frame.name
+            world = frame._compiled(said)
+            warn_of(world.warnings(), known)
+            yield index, world
+
+    for index, native in render_all(worlds(), len(missing), how_of.region(said), watch, Cluster(*cluster)):
+        yield index, pictured(native, names[index], known)
 
 
 def _column(key: str, column: Iterable[object]) -> list[Any]:
@@ -141,11 +193,6 @@ def _make(folder: Path) -> None:
         reason = getattr(error, "strerror", None) or error
         place = str(folder).replace("\0", r"\0")
         raise PictureError([(place, f"is no folder for frames: {reason}", None)]) from error
-
-
-def _within(watch: Watch, done: int, count: int, rays: int) -> Watch:
-    """Return what watches one frame, where `done` of `count` are done."""
-    return lambda pixels, total, more: watch(done * total + pixels, count * total, rays + more)
 
 
 def _note(count: int, before: int) -> Note:

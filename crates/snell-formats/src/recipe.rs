@@ -203,18 +203,25 @@ impl Recipe {
         serde_json::to_string(self).unwrap_or_default()
     }
 
+    /// What decides the numbers of the film; where files lie, and how the picture is written, does not.
+    fn of_the_film(&self) -> serde_json::Map<String, serde_json::Value> {
+        let values = serde_json::to_value(self).unwrap_or_default();
+        let mut values = values.as_object().cloned().unwrap_or_default();
+        let models: Vec<&String> = self.models.iter().map(|file| &file.sha256).collect();
+        values.insert("models".to_owned(), serde_json::json!(models));
+        let elsewhere = ["name", "folder", "search", "film_sha256", "transfer", "rounding", "bits"];
+        values.retain(|key, _| !elsewhere.contains(&key.as_str()));
+        values
+    }
+
+    /// SHA-256 of all that decides the numbers of the film, in hexadecimal.
+    pub fn digest(&self) -> String {
+        sha256([serde_json::Value::from(self.of_the_film()).to_string()])
+    }
+
     /// The first thing that makes a picture of the other recipe another one; where files lie and how the picture is written is none.
     pub fn difference(&self, other: &Self) -> Option<String> {
-        let of = |recipe: &Self| {
-            let values = serde_json::to_value(recipe).unwrap_or_default();
-            let mut values = values.as_object().cloned().unwrap_or_default();
-            let models: Vec<&String> = recipe.models.iter().map(|file| &file.sha256).collect();
-            values.insert("models".to_owned(), serde_json::json!(models));
-            let elsewhere = ["name", "folder", "search", "film_sha256", "transfer", "rounding", "bits"];
-            values.retain(|key, _| !elsewhere.contains(&key.as_str()));
-            values
-        };
-        let (a, b) = (of(self), of(other));
+        let (a, b) = (self.of_the_film(), other.of_the_film());
         let key = a.keys().chain(b.keys()).find(|key| a.get(*key) != b.get(*key))?;
         let line = |text: &str, at: usize| text.lines().nth(at).unwrap_or("nothing").trim().to_owned();
         Some(if key == "text" {

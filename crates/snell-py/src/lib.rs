@@ -6,6 +6,7 @@
 //!  python/snell                      snell._native                                       the library
 //!  Scene ── JSON and arrays ──────▶  scene ─▶ world: NativeWorld, a compiled scene ────▶ World::new, World::edited
 //!  scene.render() ────────────────▶  picture: NativePicture, its film as an array ◀──── render (watch: progress, ^C)
+//!  scene.render_part() ───────────▶  part: NativePart, sums of samples ◀─────────────── PartialFilm
 //!  picture.explain(x, y) ─────────▶  explain: NativeTree ◀───────────────────────────── explain
 //! ```
 //!
@@ -21,6 +22,7 @@
 mod errors;
 mod explain;
 mod optics;
+mod part;
 mod pickle;
 mod picture;
 mod scene;
@@ -35,6 +37,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     scene::register(module)?;
     optics::register(module)?;
     module.add_class::<picture::NativePicture>()?;
+    module.add_class::<part::NativePart>()?;
     module.add_function(wrap_pyfunction!(picture::png, module)?)?;
     module.add_function(wrap_pyfunction!(explain::viewer_script, module)?)?;
     module.add_class::<explain::NativeTree>()

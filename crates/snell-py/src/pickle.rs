@@ -4,8 +4,8 @@
 use crate::errors::{Finding, raise};
 use crate::scene::{OURS, Triangles};
 use crate::world::Ready;
-use numpy::ndarray::Array2;
-use numpy::{Element, PyArray1, PyArray2, PyArrayMethods};
+use numpy::ndarray::{Array2, Dimension};
+use numpy::{Element, PyArray, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use snell::geometry::TriangleMesh;
 use snell::scene::Scene;
@@ -148,7 +148,7 @@ impl<'py> ModelState<'py> {
         Ok(TriangleMesh {
             vertices: arrays::<f64, 3>(&self.vertices)?.into_iter().map(Into::into).collect(),
             faces: arrays(&self.faces)?,
-            face_slots: self.face_slots.to_vec()?,
+            face_slots: aligned(&self.face_slots)?.to_vec()?,
             slots: self.slots.clone(),
             uvs: arrays(&self.uvs)?,
             face_uvs: arrays(&self.face_uvs)?,
@@ -169,7 +169,7 @@ impl<'py> ImageState<'py> {
     fn read(&self, py: Python<'_>) -> PyResult<Image> {
         let pixels = arrays(&self.pixels)?;
         let image = match &self.alpha {
-            Some(alpha) => Image::with_alpha(self.width, self.height, pixels, alpha.to_vec()?),
+            Some(alpha) => Image::with_alpha(self.width, self.height, pixels, aligned(alpha)?.to_vec()?),
             None => Image::new(self.width, self.height, pixels),
         };
         image.map_err(|error| broken(py, error.to_string()))
@@ -183,8 +183,16 @@ where
     PyArray2::from_owned_array(py, rows.to_vec().into())
 }
 
+/// The same numbers where the processor can read them: what comes over a network (protocol 5 of pickle, Dask) may lie anywhere.
+pub fn aligned<'py, T: Element, D: Dimension>(
+    array: &Bound<'py, PyArray<T, D>>,
+) -> PyResult<Bound<'py, PyArray<T, D>>> {
+    let is_aligned: bool = array.getattr("flags")?.getattr("aligned")?.extract()?;
+    Ok(if is_aligned { array.clone() } else { array.call_method0("copy")?.cast_into()? })
+}
+
 fn arrays<T: Element + Copy, const N: usize>(array: &Bound<'_, PyArray2<T>>) -> PyResult<Vec<[T; N]>> {
-    let numbers = array.to_vec()?;
+    let numbers = aligned(array)?.to_vec()?;
     Ok(numbers.as_chunks::<N>().0.to_vec())
 }
 

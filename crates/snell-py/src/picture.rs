@@ -2,7 +2,8 @@
 
 use crate::errors::{self, raise};
 use crate::explain::NativeTree;
-use crate::pickle::ReadyState;
+use crate::part::NativePart;
+use crate::pickle::{ReadyState, aligned};
 use crate::watch::{unless_stopped, watched};
 use crate::world::Ready;
 use numpy::ndarray::{Array, ArrayView3, Dim, Dimension, ErrorKind, IntoDimension, ShapeError};
@@ -13,12 +14,12 @@ use pyo3::types::PyBytes;
 use snell::explain::{Channels, ViewScene, black_picture, channels, hits};
 use snell::film::transfer::{Encoding, Rounding, Transfer};
 use snell::film::{Crop, Film, Rgb};
-use snell::render::{RenderError, Rendered, render};
+use snell::render::{Grid, Options, PartialFilm, RenderError, Rendered, render};
 use snell::scene::Warning;
-use snell_formats::Report;
-use snell_formats::load::Kind;
+use snell::trace::Statistics;
+use snell::world::CompiledScene;
 use snell_formats::picture::{self, Format};
-use snell_formats::recipe::Recipe;
+use snell_formats::{Report, part};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
@@ -73,10 +74,38 @@ impl NativePicture {
             _ => raise(py, "RenderError", vec![(None, error.to_string(), None)]),
         };
         let Rendered { film, statistics } = rendered.map_err(failed)?;
-        let black = black_picture(compiled, &film);
-        let warnings = snell::render::warnings(&statistics, world, &settings).into_iter().chain(black);
-        let text = |warning: Warning| format!("{warning}{}", errors::advice(warning.code));
-        let warnings = warnings.map(|warning| (warning.code.code().to_owned(), text(warning))).collect();
+        let warnings = warnings(compiled, &film, &statistics);
+        Ok(Self { film, ready, seconds, rays: statistics.rays.total(), warnings })
+    }
+
+    /// The picture that parts make, which must be complete unless it is `unfinished`.
+    pub fn of_parts(
+        py: Python<'_>,
+        ready: Arc<Ready>,
+        wanted: Option<Crop>,
+        parts: &[PyRef<'_, NativePart>],
+        unfinished: bool,
+        seconds: f64,
+    ) -> PyResult<Self> {
+        let compiled = ready.compiled(py)?;
+        let (world, settings) = (compiled.world(), compiled.settings());
+        let refused = |place: &str, message| raise(py, "PictureError", vec![(Some(place.to_owned()), message, None)]);
+        let crop = Options { crop: wanted, ..Options::default() }.crop_of(world);
+        let crop = crop.map_err(|error| refused("crop", error.to_string()))?;
+        let of = ready.digest(wanted);
+        if parts.iter().any(|part| part.of != of) {
+            let message = "not all are of this picture: they are of another scene, or made with other settings";
+            return Err(refused("parts", message.to_owned()));
+        }
+        let nothing = PartialFilm::new(world.camera.size, crop, Grid::new(crop, u32::MAX, []));
+        let all = NativePart::together(py, &nothing, parts)?;
+        if let Some(report) = part::incomplete(&all.missing(0..settings.spp)).filter(|_| !unfinished) {
+            return Err(refused("parts", report.message));
+        }
+        let film = py.detach(|| all.film(settings.spp));
+        let film = film.map_err(|error| raise(py, "RenderError", vec![(None, error.to_string(), None)]))?;
+        let statistics = all.statistics();
+        let warnings = warnings(compiled, &film, &statistics);
         Ok(Self { film, ready, seconds, rays: statistics.rays.total(), warnings })
     }
 
@@ -91,11 +120,8 @@ impl NativePicture {
 
     /// What `snell render --from` needs to make it again, with the settings that the scene leaves out.
     fn recipe(&self) -> String {
-        let Ready { name, scene, folder, models, .. } = &*self.ready;
-        let mut recipe = Recipe::new(name, Kind::Json, &self.ready.text(), folder, models);
         let whole = self.film.crop.width == self.film.full_size[0] && self.film.crop.height == self.film.full_size[1];
-        recipe.crop = (!whole).then_some(self.film.crop);
-        recipe.resolve(scene);
+        let mut recipe = self.ready.recipe((!whole).then_some(self.film.crop));
         recipe.remember(&self.film);
         recipe.to_json()
     }
@@ -238,7 +264,7 @@ impl NativePicture {
             );
             return Err(raise(py, "PictureError", vec![(Some("pickle".to_owned()), message, None)]));
         }
-        let numbers = numbers.readonly();
+        let numbers = aligned(&numbers)?.readonly();
         for (pixel, color) in film.pixels.iter_mut().zip(numbers.as_array().rows()) {
             *pixel = Rgb::new(color[0], color[1], color[2]);
         }
@@ -266,6 +292,14 @@ impl NativePicture {
     fn __deepcopy__(slf: Py<Self>, _memo: Py<PyAny>) -> Py<Self> {
         slf
     }
+}
+
+/// What is odd about a picture: number and name, and the whole text.
+fn warnings(compiled: &CompiledScene, film: &Film, statistics: &Statistics) -> Vec<(String, String)> {
+    let black = black_picture(compiled, film);
+    let found = snell::render::warnings(statistics, compiled.world(), &compiled.settings()).into_iter().chain(black);
+    let text = |warning: Warning| format!("{warning}{}", errors::advice(warning.code));
+    found.map(|warning| (warning.code.code().to_owned(), text(warning))).collect()
 }
 
 /// Depth, normal and object; the names of the objects.

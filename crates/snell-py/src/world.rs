@@ -2,6 +2,8 @@
 
 use crate::errors::{self, Finding, raise};
 use crate::explain::Seen;
+use crate::part::NativePart;
+use crate::pickle::ReadyState;
 use crate::picture::NativePicture;
 use crate::scene::Inline;
 use pyo3::prelude::*;
@@ -9,10 +11,11 @@ use snell::film::Crop;
 use snell::scene::{Mesh, Problems, Scene, Warning};
 use snell::world::CompiledScene;
 use snell_formats::load::{Kind, ModelFile, load_with};
+use snell_formats::recipe::Recipe;
 use snell_formats::scene_file::{self, Syntax};
 use snell_formats::{LoadOptions, Report, Source};
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 /// A scene with its files.
 pub struct Read {
@@ -56,12 +59,22 @@ pub struct Ready {
     pub folder: PathBuf,
     pub models: Vec<ModelFile>,
     compiled: OnceLock<Result<CompiledScene, Vec<Finding>>>,
+    /// Of pictures that were asked for.
+    digests: Mutex<Vec<(Option<Crop>, String)>>,
 }
 
 impl Ready {
     /// A scene that is compiled when someone asks for its world.
     pub fn later(name: String, described: Scene, scene: Scene, folder: PathBuf, models: Vec<ModelFile>) -> Self {
-        Self { name, described, scene: Arc::new(scene), folder, models, compiled: OnceLock::new() }
+        Self {
+            name,
+            described,
+            scene: Arc::new(scene),
+            folder,
+            models,
+            compiled: OnceLock::new(),
+            digests: Mutex::default(),
+        }
     }
 
     fn compile(&self) -> Result<&CompiledScene, &Vec<Finding>> {
@@ -72,6 +85,25 @@ impl Ready {
     /// The scene with its world.
     pub fn compiled(&self, py: Python<'_>) -> PyResult<&CompiledScene> {
         py.detach(|| self.compile()).map_err(|findings| raise(py, "SceneError", findings.clone()))
+    }
+
+    /// How its picture is made, or this part of it.
+    pub fn recipe(&self, crop: Option<Crop>) -> Recipe {
+        let mut recipe = Recipe::new(&self.name, Kind::Json, &self.text(), &self.folder, &self.models);
+        recipe.crop = crop;
+        recipe.resolve(&self.scene);
+        recipe
+    }
+
+    /// What tells it from all other pictures: the same wherever it is rendered.
+    pub fn digest(&self, crop: Option<Crop>) -> String {
+        let mut digests = self.digests.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, known)) = digests.iter().find(|(other, _)| *other == crop) {
+            return known.clone();
+        }
+        let digest = self.recipe(crop).digest();
+        digests.push((crop, digest.clone()));
+        digest
     }
 
     /// The text of the scene, as a picture remembers it.
@@ -89,6 +121,15 @@ impl Ready {
 #[expect(clippy::needless_pass_by_value, reason = "for `map_err`")]
 fn findings(problems: Problems) -> Vec<Finding> {
     problems.iter().map(errors::problem).collect()
+}
+
+/// What a compiled scene is pickled as.
+#[derive(FromPyObject, IntoPyObject)]
+#[pyo3(from_item_all)]
+struct WorldState<'py> {
+    ready: ReadyState<'py>,
+    read_warnings: Vec<Finding>,
+    warnings: Vec<Finding>,
 }
 
 /// A compiled scene.
@@ -167,6 +208,55 @@ impl NativeWorld {
     /// What is odd: place, message, help.
     fn warnings(&self) -> Vec<Finding> {
         self.warnings.clone()
+    }
+
+    /// From what `__getnewargs__` gave.
+    #[new]
+    fn new(py: Python<'_>, state: WorldState<'_>) -> PyResult<Self> {
+        let WorldState { ready, read_warnings, warnings } = state;
+        Ok(Self { ready: Arc::new(ready.read(py)?), read_warnings, warnings })
+    }
+
+    /// What a pickle of it holds.
+    fn __getnewargs__<'py>(slf: &Bound<'py, Self>) -> PyResult<(WorldState<'py>,)> {
+        let Self { ready, read_warnings, warnings } = slf.get();
+        let ready = ReadyState::of(slf.py(), ready)?;
+        Ok((WorldState { ready, read_warnings: read_warnings.clone(), warnings: warnings.clone() },))
+    }
+
+    /// Renders some samples of some rows of the picture, or of the part of it that is wanted.
+    #[pyo3(signature = (threads, crop, rows, samples, progress))]
+    fn render_part(
+        &self,
+        py: Python<'_>,
+        threads: usize,
+        crop: Option<(u32, u32, u32, u32)>,
+        rows: Option<[u32; 2]>,
+        samples: Option<[u32; 2]>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<NativePart> {
+        let crop = crop.map(|(x, y, width, height)| Crop { x, y, width, height });
+        NativePart::render(py, &self.ready, threads, crop, rows, samples, progress.as_ref())
+    }
+
+    /// The picture that parts make; one that is not complete is refused, unless it may be `unfinished`. `seconds` are what it
+    /// took.
+    fn merge(
+        &self,
+        py: Python<'_>,
+        crop: Option<(u32, u32, u32, u32)>,
+        parts: Vec<PyRef<'_, NativePart>>,
+        unfinished: bool,
+        seconds: f64,
+    ) -> PyResult<NativePicture> {
+        let crop = crop.map(|(x, y, width, height)| Crop { x, y, width, height });
+        NativePicture::of_parts(py, Arc::clone(&self.ready), crop, &parts, unfinished, seconds)
+    }
+
+    /// Samples per pixel.
+    #[getter]
+    fn spp(&self) -> u32 {
+        self.ready.scene.render.spp
     }
 
     /// Renders a picture, or a part of it (left, top, width, height), and calls `progress(pixels, total, rays)` about twenty

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use snell::film::{Crop, Rgb};
-use snell::render::{Grid, LaneWidth, Options, PartialFilm, Piece, Rendered, Settings, render};
+use snell::render::{Grid, JoinError, LaneWidth, Options, PartialFilm, Piece, RenderError, Rendered, Settings, render};
 use snell::scene::Scene;
 use snell::trace::Twice;
 use snell::world::World;
@@ -100,15 +100,52 @@ fn any_rectangles_and_samples_make_the_whole() {
             let what = format!("{spp} samples, round {round}, {} parts", parts.len());
             let together = join(&parts.iter().collect::<Vec<_>>(), size, all, 16).unwrap();
             assert_same(&together, &whole, spp, &what);
-            // As a tree: two and two.
+            // As a tree: two and two, in memory or as from a file.
             let mut trees: Vec<PartialFilm> = parts.clone();
             while trees.len() > 1 {
                 let (a, b) = (trees.remove(0), trees.pop().unwrap());
-                trees.push(join(&[&a, &b], size, all, 1 + chance.below(40)).unwrap());
+                let from_file = |tile_size: u32| join(&[&a, &b], size, all, tile_size).unwrap();
+                let joined = (chance.below(2) == 0).then(|| from_file(1 + chance.below(40)));
+                trees.push(joined.unwrap_or_else(|| a.joined(&[&b]).unwrap()));
             }
             assert_same(&trees[0], &whole, spp, &what);
             assert!(join(&[&together, &parts[0]], size, all, 16).is_err(), "{what}: twice");
+            assert!(matches!(together.joined(&[&parts[0]]), Err(JoinError::Twice(_))), "{what}: twice");
         }
+    }
+}
+
+#[test]
+fn what_is_there_so_far_is_shown_and_not_called_finished() {
+    let scene = scene(4);
+    let (world, settings) = (World::new(&scene).unwrap(), Settings::from(&scene));
+    let (size, options) = (world.camera.size, Options::default());
+    let part = |y: u32, height: u32, samples: std::ops::Range<u32>| {
+        let crop = Crop { x: 0, y, width: size[0], height };
+        let mut part = PartialFilm::new(size, crop, Grid::new(crop, 8, []));
+        part.render(&world, &settings, samples, &options, None).unwrap();
+        part
+    };
+    // The first sample of some rows, all of others, and of some rows only a later one, whose mean says nothing.
+    let all = part(0, 5, 0..1).joined(&[&part(5, 8, 0..4), &part(15, 3, 2..3)]).unwrap();
+    let film = all.film(4).unwrap();
+    assert_eq!(film.crop, Crop { x: 0, y: 0, width: size[0], height: 18 });
+    let whole = render(&world, &settings, &options).unwrap().film;
+    let first = part(0, 5, 0..1).film(4).unwrap();
+    for (at, pixel) in film.pixels.iter().enumerate() {
+        let (row, finished) = (at / size[0] as usize, film.finished[at]);
+        match row {
+            0..5 => assert!(!finished && *pixel == first.pixels[at]),
+            5..13 => assert!(finished && *pixel == whole.pixels[at]),
+            _ => assert!(!finished && *pixel == Rgb::black()),
+        }
+    }
+    let other = PartialFilm::new([8, 8], Crop { width: 8, height: 8, x: 0, y: 0 }, Grid::new(film.crop, 8, []));
+    assert!(matches!(all.joined(&[&other]), Err(JoinError::OtherSize(..))));
+    for samples in [0..5, 3..3] {
+        let mut part = PartialFilm::new(size, film.crop, Grid::new(film.crop, 8, []));
+        let refused = part.render(&world, &settings, samples.clone(), &options, None).unwrap_err();
+        assert!(matches!(refused, RenderError::SamplesOutside { .. }), "{samples:?}: {refused}");
     }
 }
 

@@ -1,9 +1,9 @@
-//! A picture in steps, in passes, and in parts of its samples that are merged: always the bits of the whole.
+//! A picture in steps and in passes: always the bits of the whole.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use snell::film::{Crop, Film, Rgb};
-use snell::render::{Accumulator, LaneWidth, Options, Passes, RenderError, Renderer, Settings, accumulate, render};
+use snell::render::{Options, Passes, Renderer, Settings, render};
 use snell::scene::{Integrator, Scene};
 use snell::trace::Statistics;
 use snell::world::World;
@@ -21,76 +21,6 @@ fn whole(scene: &Scene) -> (Film, Statistics) {
     let options = Options { threads: 1, ..Options::default() };
     let rendered = render(&World::new(scene).unwrap(), &Settings::from(scene), &options).unwrap();
     (rendered.film, rendered.statistics)
-}
-
-/// Numbers that are the same in every run (Knuth's MMIX).
-struct Numbers(u64);
-
-impl Numbers {
-    fn below(&mut self, end: u32) -> u32 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        ((self.0 >> 33) % u64::from(end)) as u32
-    }
-}
-
-/// As it goes from machine to machine.
-fn sent(accumulator: &Accumulator) -> Accumulator {
-    postcard::from_bytes(&postcard::to_allocvec(accumulator).unwrap()).unwrap()
-}
-
-#[test]
-fn samples_in_any_parts_and_any_order_merge_to_the_bits_of_the_whole() {
-    let mut numbers = Numbers(1);
-    for spp in [1, 2, 3, 5, 8, 13, 64] {
-        let scene = glass(spp);
-        let (film, statistics) = whole(&scene);
-        assert!(statistics.lost.rays > 0, "nothing is lost");
-        let (world, settings) = (World::new(&scene).unwrap(), Settings::from(&scene));
-        for round in 0..6 {
-            let (mut parts, mut first) = (Vec::new(), 0);
-            while first < spp {
-                let most = if round == 0 { 1 } else { 64 };
-                let end = spp.min(first + 1 + numbers.below(most));
-                let lanes = LaneWidth::ALL[numbers.below(4) as usize];
-                let [threads, tile_size] = [[1, 2][numbers.below(2) as usize], 3 + numbers.below(30)];
-                let passes = [Passes::WholeTiles, Passes::CoarseToFine { coarsest: 4 }][numbers.below(2) as usize];
-                let samples = Some([first, end]);
-                let options =
-                    Options { samples, lanes, threads: threads as usize, tile_size, passes, ..Options::default() };
-                parts.push(sent(&accumulate(&world, &settings, &options).unwrap()));
-                first = end;
-            }
-            // Two at a time, as in a tree of merges, in any order.
-            while parts.len() > 1 {
-                let part = parts.swap_remove(numbers.below(parts.len() as u32) as usize);
-                let to = numbers.below(parts.len() as u32) as usize;
-                parts[to].merge(part).unwrap();
-                parts[to] = sent(&parts[to]);
-            }
-            let merged = parts.remove(0);
-            assert!(merged.film().unwrap().unwrap() == film, "{spp} samples, round {round}");
-            assert_eq!(merged.statistics(), statistics, "{spp} samples, round {round}");
-            assert_eq!(merged.samples().as_slice(), std::slice::from_ref(&(0..u64::from(spp))));
-        }
-    }
-}
-
-#[test]
-fn a_part_that_is_missing_or_there_twice_makes_no_picture() {
-    let scene = glass(5);
-    let (world, settings) = (World::new(&scene).unwrap(), Settings::from(&scene));
-    let part = |first: u32, end: u32| {
-        accumulate(&world, &settings, &Options { samples: Some([first, end]), ..Options::default() }).unwrap()
-    };
-    let mut merged = part(0, 2);
-    merged.merge(part(3, 5)).unwrap();
-    assert_eq!((merged.samples(), merged.film().unwrap().is_none()), (vec![0..2, 3..5], true));
-    assert_eq!(merged.merge(part(1, 4)).unwrap_err().to_string(), "the samples 1 to 1 are there twice");
-    let options = |samples| Options { samples: Some(samples), ..Options::default() };
-    for samples in [[0, 6], [3, 3], [4, 2]] {
-        let refused = render(&world, &settings, &options(samples)).unwrap_err();
-        assert!(matches!(refused, RenderError::SamplesOutside { .. }), "{samples:?}: {refused}");
-    }
 }
 
 #[test]

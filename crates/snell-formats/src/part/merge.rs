@@ -98,17 +98,13 @@ impl Merge {
             Some(gaps).filter(|gaps| !gaps.is_empty())
         };
         let missing = self.grid.rectangles(missing);
-        if missing.is_empty() {
-            return Ok(());
+        let pieces: Vec<Piece> = missing.into_iter().map(|(rect, samples)| Piece { rect, samples }).collect();
+        match incomplete(&pieces) {
+            None => Ok(()),
+            Some(report) => Err(report.help(
+                "render what is missing with --rows, --samples and --part, or join what is there into a part: -o FILE.npz",
+            )),
         }
-        let mut lines: Vec<String> = missing.iter().take(NAMED).map(|(rect, gaps)| words(*rect, gaps)).collect();
-        if missing.len() > NAMED {
-            lines.push(format!("and {} more", missing.len() - NAMED));
-        }
-        let message = format!("the picture is not complete; missing: {}", lines.join("; "));
-        let help =
-            "render what is missing with --rows, --samples and --part, or join what is there into a part: -o FILE.npz";
-        Err(Report::error(message).help(help))
     }
 
     /// What all samples took, without the worst pixel.
@@ -165,10 +161,7 @@ impl Merge {
         let mut worst = Statistics::default();
         for rows in self.bands() {
             let band = self.band(&rows, true, true)?;
-            let part = band.film(spp).map_err(|e| Report::error(e.to_string()))?;
-            let start = (rows.start - crop.y) as usize * crop.width as usize;
-            film.pixels[start..start + part.pixels.len()].copy_from_slice(&part.pixels);
-            film.finished[start..start + part.finished.len()].copy_from_slice(&part.finished);
+            band.put_into(&mut film, spp);
             worst.lost = worst.lost.or_worse(&band.statistics().lost);
         }
         statistics.lost = statistics.lost.with_worst(&worst.lost);
@@ -271,6 +264,16 @@ fn same_picture(a: &PartFile, b: &PartFile) -> Result<(), Report> {
             Err(Report::error(format!("`{a}` and `{b}` are parts of different pictures: {what}")))
         }
     }
+}
+
+/// What is said of pixels and samples that are missing of a picture: the first ones of many. `None` if none are.
+pub fn incomplete(missing: &[Piece]) -> Option<Report> {
+    let mut lines: Vec<String> = missing.iter().take(NAMED).map(|piece| words(piece.rect, &piece.samples)).collect();
+    if missing.len() > NAMED {
+        lines.push(format!("and {} more", missing.len() - NAMED));
+    }
+    let message = format!("the picture is not complete; missing: {}", lines.join("; "));
+    (!missing.is_empty()).then(|| Report::error(message))
 }
 
 /// Pixels and samples, for people.

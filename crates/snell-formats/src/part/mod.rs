@@ -14,8 +14,8 @@ mod merge;
 mod read;
 mod write;
 
-pub use merge::Merge;
-pub use read::PartFile;
+pub use merge::{Merge, incomplete};
+pub use read::{PartFile, check};
 pub use write::write;
 
 use crate::recipe::Recipe;
@@ -60,18 +60,18 @@ impl Header {
         let spp = recipe.spp.unwrap_or(1);
         Self { snell_part: VERSION, recipe, size, crop, spp, pieces, statistics }
     }
+}
 
-    /// Numbers of `sums.npy` in threes, and of `lost.npy`.
-    fn counts(&self) -> Option<[u64; 2]> {
-        let mut counts = [0u64; 2];
-        for piece in &self.pieces {
-            let pixels = piece.pixel_count();
-            counts[0] = counts[0].checked_add(pixels.checked_mul(piece.blocks().len() as u64)?)?;
-            counts[1] = counts[1].checked_add(pixels)?;
-        }
-        counts[0].checked_mul(24)?;
-        Some(counts)
+/// Numbers of `sums.npy` in threes, and of `lost.npy`.
+fn counts(pieces: &[Piece]) -> Option<[u64; 2]> {
+    let mut counts = [0u64; 2];
+    for piece in pieces {
+        let pixels = piece.pixel_count();
+        counts[0] = counts[0].checked_add(pixels.checked_mul(piece.blocks().len() as u64)?)?;
+        counts[1] = counts[1].checked_add(pixels)?;
     }
+    counts[0].checked_mul(24)?;
+    Some(counts)
 }
 
 #[cfg(test)]

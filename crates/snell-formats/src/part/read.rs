@@ -1,10 +1,11 @@
 //! Reading parts, a few rows at a time.
 
-use super::{HEADER, Header, LOST, SUMS, VERSION};
+use super::{HEADER, Header, LOST, SUMS, VERSION, counts};
 use crate::files::MAX_SCENE_BYTES;
 use crate::picture::npy;
 use crate::report::Report;
 use snell::film::{Crop, Rgb};
+use snell::render::Piece;
 use snell::scene::MAX_SPP;
 use std::fs::File;
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
@@ -56,7 +57,8 @@ impl PartFile {
             return Err(failed(format!("it is of version {read}, and this Snell reads {VERSION}")));
         }
         let header: Header = serde_json::from_slice(&text).map_err(|e| failed(format!("part.json: {e}")))?;
-        let [sums, lost] = check(&header).map_err(failed)?;
+        let of_the_file = |e: String| failed(format!("part.json: {e}"));
+        let [sums, lost] = check(header.size, header.crop, header.spp, &header.pieces).map_err(of_the_file)?;
         let mut array = |name: &str, beginning: Vec<u8>, numbers: u64| -> Result<u64, String> {
             let mut entry = archive.by_name(name).map_err(not_whole)?;
             let expected = beginning.len() as u64 + 8 * numbers;
@@ -132,33 +134,36 @@ impl PartFile {
     }
 }
 
-/// Is what a header says possible? How many sums in threes, and pixels, it speaks of.
-fn check(header: &Header) -> Result<[u64; 2], String> {
-    let Header { size, crop, spp, pieces, .. } = header;
+/// Are these pieces possible of a picture of this size, of which `crop` is wanted with `spp` samples? How many sums in threes, and
+/// pixels, they have.
+///
+/// # Errors
+/// With what is not.
+pub fn check(size: [u32; 2], crop: Crop, spp: u32, pieces: &[Piece]) -> Result<[u64; 2], String> {
     let fits = |start: u32, length: u32, first: u32, have: u32| {
         length > 0 && start >= first && start.checked_add(length).is_some_and(|end| end <= first.saturating_add(have))
     };
     if !fits(crop.x, crop.width, 0, size[0]) || !fits(crop.y, crop.height, 0, size[1]) {
-        return Err(format!("part.json: {crop:?} does not lie within {} x {} pixels", size[0], size[1]));
+        return Err(format!("{crop:?} does not lie within {} x {} pixels", size[0], size[1]));
     }
-    if *spp == 0 || *spp > MAX_SPP {
-        return Err(format!("part.json: {spp} samples per pixel, where 1 to {MAX_SPP} are possible"));
+    if spp == 0 || spp > MAX_SPP {
+        return Err(format!("{spp} samples per pixel, where 1 to {MAX_SPP} are possible"));
     }
     for piece in pieces {
         let rect = piece.rect;
         if !fits(rect.x, rect.width, crop.x, crop.width) || !fits(rect.y, rect.height, crop.y, crop.height) {
-            return Err(format!("part.json: the piece {rect:?} does not lie within {crop:?}"));
+            return Err(format!("the piece {rect:?} does not lie within {crop:?}"));
         }
         let mut from = 0;
         for (number, &[first, end]) in piece.samples.iter().enumerate() {
-            if first >= end || end > *spp || first < from || (number > 0 && first == from) {
-                return Err(format!("part.json: {:?} are no ranges of {spp} samples in order", piece.samples));
+            if first >= end || end > spp || first < from || (number > 0 && first == from) {
+                return Err(format!("{:?} are no ranges of {spp} samples in order", piece.samples));
             }
             from = end;
         }
         if piece.samples.is_empty() {
-            return Err("part.json: a piece without samples".to_owned());
+            return Err("a piece without samples".to_owned());
         }
     }
-    header.counts().ok_or_else(|| "part.json: more pixels than can be counted".to_owned())
+    counts(pieces).ok_or_else(|| "more pixels than can be counted".to_owned())
 }

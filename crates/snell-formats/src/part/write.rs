@@ -84,5 +84,5 @@ fn options() -> SimpleFileOptions {
 }
 
 fn counts(header: &Header) -> io::Result<[u64; 2]> {
-    header.counts().ok_or_else(|| io::Error::other("there are more sums than can be counted"))
+    super::counts(&header.pieces).ok_or_else(|| io::Error::other("there are more sums than can be counted"))
 }

@@ -10,7 +10,6 @@ use core::ops::Range;
 
 /// The samples from `first` to below `first + 2^log2`; `first` is a multiple of `2^log2`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Block {
     /// The first sample.
     pub first: u32,
@@ -46,7 +45,6 @@ impl Block {
 
 /// Sums of disjoint blocks of samples, by their order. Siblings are added up as soon as both are there.
 #[derive(Clone, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PairwiseSum<T> {
     blocks: Vec<(Block, T)>,
 }

@@ -8,8 +8,7 @@ mod warnings;
 
 pub use crate::lanes::LaneWidth;
 pub use crate::settings::Settings;
-pub use accumulator::{Accumulator, MergeError};
-pub use partial::{Grid, PartialFilm, Piece};
+pub use partial::{Grid, JoinError, PartialFilm, Piece};
 pub use renderer::Renderer;
 pub use warnings::warnings;
 
@@ -25,7 +24,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// Edge of a tile in pixels, if nobody says.
 pub const TILE_SIZE: u32 = 32;
 
-/// How to render; nothing here changes a bit of the picture but `crop`, which cuts it, and `samples`, which leaves some out.
+/// How to render; nothing here changes a bit of the picture but `crop`, which cuts it.
 #[derive(Clone, Copy)]
 pub struct Options<'a> {
     /// Worker threads; 0: as many as the machine has cores.
@@ -36,8 +35,6 @@ pub struct Options<'a> {
     pub lanes: LaneWidth,
     /// Only this part of the picture.
     pub crop: Option<Crop>,
-    /// Only the samples from the first number to below the second one of each pixel, for an [`Accumulator`].
-    pub samples: Option<[u32; 2]>,
     /// In which order.
     pub passes: Passes,
     /// Called after every tile, from any thread.
@@ -67,7 +64,6 @@ impl Default for Options<'_> {
             tile_size: TILE_SIZE,
             lanes: LaneWidth::best(),
             crop: None,
-            samples: None,
             passes: Passes::default(),
             progress: None,
             cancel: None,
@@ -75,12 +71,27 @@ impl Default for Options<'_> {
     }
 }
 
+impl Options<'_> {
+    /// The part of the picture that is wanted: all of it, if nobody says.
+    ///
+    /// # Errors
+    /// If it is empty, or does not lie within.
+    pub fn crop_of(&self, world: &World) -> Result<Crop, RenderError> {
+        let size = world.camera.size;
+        let crop = self.crop.unwrap_or(Crop { x: 0, y: 0, width: size[0], height: size[1] });
+        let fits =
+            |start: u32, length: u32, limit: u32| length > 0 && start.checked_add(length).is_some_and(|e| e <= limit);
+        let is_within = fits(crop.x, crop.width, size[0]) && fits(crop.y, crop.height, size[1]);
+        if is_within { Ok(crop) } else { Err(RenderError::CropOutside { crop, size }) }
+    }
+}
+
 impl fmt::Debug for Options<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { threads, tile_size, lanes, crop, samples, passes, .. } = self;
+        let Self { threads, tile_size, lanes, crop, passes, .. } = self;
         let mut debug = f.debug_struct("Options");
         debug.field("threads", threads).field("tile_size", tile_size).field("lanes", lanes).field("crop", crop);
-        debug.field("samples", samples).field("passes", passes).finish_non_exhaustive()
+        debug.field("passes", passes).finish_non_exhaustive()
     }
 }
 
@@ -164,18 +175,6 @@ pub fn render_into(
         film.blacken_unfinished();
     }
     Ok(schedule.statistics())
-}
-
-/// Renders some samples of each pixel ([`Options::samples`]), all of them if nothing is said, and keeps their sums.
-///
-/// # Errors
-/// As [`render`].
-pub fn accumulate(world: &World, settings: &Settings, options: &Options<'_>) -> Result<Accumulator, RenderError> {
-    let mut film = Film::new(world.camera.size, Crop { x: 0, y: 0, width: 0, height: 0 })?;
-    let mut schedule = Schedule::new(&mut film, world, settings, options)?;
-    schedule.keep_sums();
-    schedule.step(&mut film, u64::MAX);
-    Ok(schedule.into_accumulator())
 }
 
 /// Traces one pixel, column and row from the top left, and writes down every ray. The sum of the trees is the film's value,

@@ -148,6 +148,17 @@ impl Grid {
     }
 }
 
+/// Why films were not joined.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum JoinError {
+    /// They are of pictures of different sizes.
+    #[error("one is of a picture of {} x {} pixels, another of one of {} x {}", .0[0], .0[1], .1[0], .1[1])]
+    OtherSize([u32; 2], [u32; 2]),
+    /// They have samples in common.
+    #[error(transparent)]
+    Twice(#[from] Twice),
+}
+
 #[derive(Clone, Debug, Default, PartialEq)]
 struct Cell {
     /// Pixels row by row.
@@ -173,6 +184,16 @@ impl Cell {
         let end = |end: u64| u32::try_from(end).unwrap_or(u32::MAX);
         self.sums.samples().into_iter().map(|range| [range.start as u32, end(range.end)]).collect()
     }
+}
+
+/// The smallest rectangle around two.
+fn around(a: Crop, b: Crop) -> Crop {
+    let span = |a: u32, a_length: u32, b: u32, b_length: u32| {
+        let first = a.min(b);
+        (first, (a + a_length).max(b + b_length) - first)
+    };
+    let ((x, width), (y, height)) = (span(a.x, a.width, b.x, b.width), span(a.y, a.height, b.y, b.height));
+    Crop { x, y, width, height }
 }
 
 /// What is missing of some samples where those of `there` are.
@@ -244,6 +265,36 @@ impl PartialFilm {
         Ok(())
     }
 
+    /// All that this and other films of the same picture have, in the smallest rectangle around them.
+    ///
+    /// # Errors
+    /// When some samples are there twice, or one is of a picture of another size.
+    pub fn joined(&self, others: &[&Self]) -> Result<Self, JoinError> {
+        if let Some(other) = others.iter().find(|other| other.size != self.size) {
+            return Err(JoinError::OtherSize(self.size, other.size));
+        }
+        let parts: Vec<&Self> = [self].into_iter().chain(others.iter().copied()).collect();
+        let crop = others.iter().map(|part| part.crop).fold(self.crop, around);
+        let pieces: Vec<(&Self, Piece)> =
+            parts.iter().flat_map(|part| part.pieces().into_iter().map(move |piece| (*part, piece))).collect();
+        let grid = Grid::new(crop, u32::MAX, pieces.iter().map(|(_, piece)| piece.rect));
+        let mut all = Self::new(self.size, crop, grid);
+        let (mut sums, mut lost) = (Vec::new(), Vec::new());
+        for (part, piece) in pieces {
+            sums.clear();
+            lost.clear();
+            for y in piece.rect.y..piece.rect.y + piece.rect.height {
+                part.row(&piece, y, &mut sums);
+                part.lost_row(&piece, y, &mut lost);
+            }
+            all.insert(&piece, &sums, &lost)?;
+        }
+        for part in parts {
+            all.count(&part.statistics);
+        }
+        Ok(all)
+    }
+
     /// Counts what samples that were inserted took.
     pub fn count(&mut self, statistics: &Statistics) {
         self.statistics.merge(statistics);
@@ -302,26 +353,42 @@ impl PartialFilm {
         self.cells.iter().all(|cell| missing(samples.clone(), &cell.samples()).is_empty())
     }
 
-    /// The picture; pixels of which not the first `spp` samples are there, and no others, are black and unfinished.
+    /// Which of these samples are not there, in rectangles.
+    pub fn missing(&self, samples: Range<u32>) -> Vec<Piece> {
+        let of = |cell: usize| {
+            let missing = missing(samples.clone(), &self.cells[cell].samples());
+            Some(missing.into_iter().map(|range| [range.start, range.end]).collect()).filter(|m: &Vec<_>| !m.is_empty())
+        };
+        self.grid.rectangles(of).into_iter().map(|(rect, samples)| Piece { rect, samples }).collect()
+    }
+
+    /// The picture of its rectangle, as [`put_into`](Self::put_into) makes it.
     ///
     /// # Errors
     /// When its memory cannot be allocated.
     pub fn film(&self, spp: u32) -> Result<Film, FilmTooLarge> {
         let mut film = Film::new(self.size, self.crop)?;
-        for (at, cell) in self.grid.cells().zip(&self.cells).filter(|(_, cell)| cell.samples() == [[0, spp]]) {
+        self.put_into(&mut film, spp);
+        Ok(film)
+    }
+
+    /// Puts its pixels into a film that its rectangle lies within. Those of which all `spp` samples are there are finished; of which
+    /// only the first ones are there, these are shown. Others stay as they are.
+    pub fn put_into(&self, film: &mut Film, spp: u32) {
+        let (crop, width) = (film.crop, film.crop.width as usize);
+        for (at, cell) in self.grid.cells().zip(&self.cells) {
+            let [[0, count]] = cell.samples()[..] else { continue };
             for row in 0..at.height as usize {
-                let (from, width) = (row * at.width as usize, at.width as usize);
-                let top = (at.y - self.crop.y) as usize + row;
-                let to = top * self.crop.width as usize + (at.x - self.crop.x) as usize;
-                for column in 0..width {
+                let from = row * at.width as usize;
+                let to = ((at.y - crop.y) as usize + row) * width + (at.x - crop.x) as usize;
+                for column in 0..at.width as usize {
                     let blocks = cell.sums.blocks().iter().map(|(_, plane)| plane[from + column]);
                     let sum = blocks.reduce(|sum, block| sum + block).unwrap_or(Rgb::black());
-                    film.pixels[to + column] = mean(sum, spp);
+                    film.pixels[to + column] = mean(sum, count);
                 }
-                film.finished[to..to + width].fill(true);
+                film.finished[to..to + at.width as usize].fill(count == spp);
             }
         }
-        Ok(film)
     }
 
     /// Renders what is missing of these samples, cell by cell, fewer samples first, until everything is there, until it is cancelled, or

@@ -81,12 +81,6 @@ impl<'a> Renderer<'a> {
         let statistics = self.schedule.statistics();
         (self.film, statistics)
     }
-
-    /// The sums of the samples of all passes that are complete; `None` if all samples are rendered in one pass
-    /// ([`Options::samples`], [`Passes`]), which keeps no sums.
-    pub fn accumulator(&self) -> Option<&Accumulator> {
-        self.schedule.accumulator.as_ref()
-    }
 }
 
 /// What is still to be rendered into a film.
@@ -151,19 +145,18 @@ impl Pass {
 }
 
 /// The passes over a picture, without those that have no pixels.
-fn passes(crop: &Crop, samples: Range<u32>, kind: Passes) -> VecDeque<Pass> {
+fn passes(crop: &Crop, spp: u32, kind: Passes) -> VecDeque<Pass> {
     let Passes::CoarseToFine { coarsest } = kind else {
-        return [Pass { x: 0, y: 0, step: 1, samples, completes: true }].into();
+        return [Pass { x: 0, y: 0, step: 1, samples: 0..spp, completes: true }].into();
     };
     let mut passes = VecDeque::new();
-    let (mut first, mut count) = (samples.start, 1);
     let mut step = coarsest.clamp(1, 1 << 16).next_power_of_two();
     // The first sample from coarse to fine: every `step`-th pixel, then those between, each time twice as many in a row.
-    passes.push_back(Pass { x: 0, y: 0, step, samples: first..first + 1, completes: false });
+    passes.push_back(Pass { x: 0, y: 0, step, samples: 0..1, completes: false });
     while step > 1 {
         let half = step / 2;
         for [x, y] in [[half, 0], [0, half], [half, half]] {
-            passes.push_back(Pass { x, y, step, samples: first..first + 1, completes: false });
+            passes.push_back(Pass { x, y, step, samples: 0..1, completes: false });
         }
         step = half;
     }
@@ -172,11 +165,11 @@ fn passes(crop: &Crop, samples: Range<u32>, kind: Passes) -> VecDeque<Pass> {
         last.completes = true;
     }
     // Then as many samples at a time as there are already, so that there are few sums to keep.
-    first += 1;
-    while first < samples.end {
-        let end = first.saturating_add(count).min(samples.end);
+    let mut first = 1;
+    while first < spp {
+        let end = first.saturating_mul(2).min(spp);
         passes.push_back(Pass { x: 0, y: 0, step: 1, samples: first..end, completes: true });
-        (first, count) = (end, count.saturating_mul(2));
+        first = end;
     }
     passes
 }
@@ -193,20 +186,10 @@ impl<'a> Schedule<'a> {
             return Err(RenderError::OtherModel { integrator: settings.integrator });
         }
         let size = world.camera.size;
-        let crop = options.crop.unwrap_or(Crop { x: 0, y: 0, width: size[0], height: size[1] });
-        let fits =
-            |start: u32, length: u32, limit: u32| length > 0 && start.checked_add(length).is_some_and(|e| e <= limit);
-        if !fits(crop.x, crop.width, size[0]) || !fits(crop.y, crop.height, size[1]) {
-            return Err(RenderError::CropOutside { crop, size });
-        }
-        let [first, end] = options.samples.unwrap_or([0, settings.spp]);
-        if first >= end || end > settings.spp {
-            return Err(RenderError::SamplesOutside { samples: [first, end], spp: settings.spp });
-        }
+        let crop = options.crop_of(world)?;
         film.start_again(size, crop)?;
-        let passes = passes(&crop, first..end, options.passes);
-        let is_all = (first, end) == (0, settings.spp);
-        let in_one = is_all && passes.iter().filter(|pass| pass.completes).count() == 1;
+        let passes = passes(&crop, settings.spp, options.passes);
+        let in_one = passes.iter().filter(|pass| pass.completes).count() == 1;
         let options = Options { tile_size: options.tile_size.clamp(1, 1 << 15), ..*options };
         Ok(Self {
             world,
@@ -219,7 +202,7 @@ impl<'a> Schedule<'a> {
             planes: Vec::new(),
             lost: Vec::new(),
             statistics: Statistics::default(),
-            accumulator: (!in_one).then(|| Accumulator::new(size, crop)),
+            accumulator: (!in_one).then(|| Accumulator::new(size[0], crop)),
             samples: 0,
             rays: 0,
         })
@@ -227,16 +210,6 @@ impl<'a> Schedule<'a> {
 
     pub fn is_finished(&self) -> bool {
         self.passes.is_empty()
-    }
-
-    /// Keeps the sums of all samples, though the picture could do without them.
-    pub fn keep_sums(&mut self) {
-        self.accumulator.get_or_insert_with(|| Accumulator::new(self.world.camera.size, self.crop));
-    }
-
-    /// The sums of all passes that are complete.
-    pub fn into_accumulator(self) -> Accumulator {
-        self.accumulator.unwrap_or_else(|| Accumulator::new(self.world.camera.size, self.crop))
     }
 
     pub fn statistics(&self) -> Statistics {
@@ -248,8 +221,7 @@ impl<'a> Schedule<'a> {
     /// Samples of all pixels.
     fn total(&self) -> u64 {
         let [width, height] = [self.crop.width, self.crop.height].map(u64::from);
-        let [first, end] = self.options.samples.unwrap_or([0, self.settings.spp]);
-        width * height * u64::from(end - first)
+        width * height * u64::from(self.settings.spp)
     }
 
     /// Renders so many tiles more, or all that are left, and returns those that have changed.
@@ -332,10 +304,8 @@ impl<'a> Schedule<'a> {
         self.passes.pop_front();
         self.taken = 0;
         if completes_samples && let Some(accumulator) = &mut self.accumulator {
-            let planes = std::mem::take(&mut self.planes);
-            // The samples of passes are different ones.
-            let _ = accumulator.add(planes, &self.lost, &self.statistics);
-            (self.lost, self.statistics) = (Vec::new(), Statistics::default());
+            let (planes, lost) = (std::mem::take(&mut self.planes), std::mem::take(&mut self.lost));
+            accumulator.add(planes, lost, &std::mem::take(&mut self.statistics));
         }
     }
 }
@@ -454,8 +424,7 @@ impl Shared<'_, '_> {
         let start = (tile.y - crop.y) as usize * width + (tile.x - crop.x) as usize - *first;
         let row_starts = (0..tile.height as usize).map(|row| start + row * step * width);
         if let Some(accumulator) = accumulator {
-            let before: u64 = accumulator.samples().iter().map(|range| range.end - range.start).sum();
-            let count = (before + self.pass.samples.len() as u64) as u32;
+            let count = (accumulator.sample_count() + self.pass.samples.len() as u64) as u32;
             for (row, start) in row_starts.clone().enumerate() {
                 for column in 0..tile.width as usize {
                     let (from, to) = (row * tile.width as usize + column, start + column * step);

@@ -1,0 +1,305 @@
+"""Handing tasks out to a cluster, and collecting what comes back."""
+
+from __future__ import annotations
+
+import math
+import pickle
+import time
+import uuid
+import warnings
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+from functools import partial
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
+
+from .._native import NativePart, NativeWorld
+from ..errors import RenderError, SceneError, SnellError
+from ..how import Region
+from . import plan, tasks
+from .plan import Band, Range
+
+if TYPE_CHECKING:
+    from distributed import Client, Future
+
+#: So many tasks should be ready for each thread.
+_AHEAD = 4
+
+
+class Cluster:
+    """Workers, and how they are used.
+
+    Parameters
+    ----------
+    client : distributed.Client
+        Not an asynchronous one.
+    task_seconds : float
+        How long a task should take, above 0.
+
+    Raises
+    ------
+    SceneError
+        If the client is none, or the time is none.
+    """
+
+    def __init__(self, client: object, task_seconds: float) -> None:
+        self.client = _checked(client)
+        if not (isinstance(task_seconds, int | float) and 0 < task_seconds < math.inf):
+            raise SceneError([("task_seconds", f"expected a number of seconds above 0, read {task_seconds!r}", None)])
+        self.task_seconds = float(task_seconds)
+
+
+@dataclass(eq=False)
+class Job:
+    """A picture that is wanted."""
+
+    world: NativeWorld
+    crop: Region | None = None
+    #: What has come back: parts that have no sample in common.
+    parts: list[NativePart] = field(default_factory=list)
+    samples_done: int = 0
+    rays: int = 0
+    bands: list[Band] = field(default_factory=list)
+    #: How many answers are waited for.
+    open: int = 0
+    scene: Future | None = None
+    started: float = 0.0
+
+    @property
+    def region(self) -> Region:
+        """Left, top, width and height."""
+        return self.crop or (0, 0, *self.world.size)
+
+    @property
+    def pixels(self) -> int:
+        """How many pixels."""
+        return self.region[2] * self.region[3]
+
+
+class Engine:
+    """Renders pictures on the workers of a cluster.
+
+    Parameters
+    ----------
+    cluster : Cluster
+        Who does it.
+    watch : callable, optional
+        Called whenever something has come back.
+    work : module
+        What the workers do; a simulation has others.
+    """
+
+    def __init__(
+        self, cluster: Cluster, watch: Callable[[], object] | None = None, work: ModuleType | Any = tasks
+    ) -> None:
+        self.client = cluster.client
+        self._wanted = cluster.task_seconds
+        self._watch = watch or (lambda: None)
+        self._work = work
+        self._run = uuid.uuid4().hex[:8]
+        self._tasks = 0
+        #: What happens when something has come back, by its key; the futures are held until then.
+        self._waiting: dict[str, tuple[Job, Future, Callable[[Future], object]]] = {}
+        self._arrivals: Any = None
+        #: Seconds for a sample of one pixel, as the pictures before were.
+        self._known: float | None = None
+
+    def finished(self, jobs: Iterable[Job], count: int = 1) -> Iterator[Job]:
+        """Render pictures, and yield each when all of it has come back. `count` is how many there are.
+
+        Raises
+        ------
+        RenderError
+            If the cluster gives up; what workers raise is raised here.
+        """
+        from distributed import as_completed  # noqa: PLC0415 # it is there, as there is a client
+
+        self._arrivals = as_completed()
+        queue, running = iter(jobs), list[Job]()
+        is_empty = False
+        while True:
+            threads = sum(self.client.nthreads().values())
+            while not is_empty and len(self._waiting) < _AHEAD * max(threads, 1):
+                job = next(queue, None)
+                is_empty = job is None
+                if job is not None:
+                    running.append(job)
+                    self._start(job, math.ceil(_AHEAD * max(threads, 1) / count))
+            if not running:
+                return
+            while not (is_done := [job for job in running if not job.open]):
+                self._take(next(self._arrivals))
+            for job in is_done:
+                running.remove(job)
+                self._learn(job)
+                yield job
+
+    def so_far(self, job: Job) -> list[NativePart]:
+        """Return what there is of a picture, wherever it is."""
+        there = [part for band in job.bands for part in band.parts]
+        back: list[NativePart] = self.client.gather(there, errors="skip")
+        return [*job.parts, *back]
+
+    def cancel(self) -> None:
+        """Give up what is under way. Tasks that run already come to their end, which nobody waits for."""
+        self.client.cancel([future for _, future, _ in self._waiting.values()])
+        self._waiting.clear()
+
+    def _start(self, job: Job, count: int) -> None:
+        """Hand out the first tasks of a picture."""
+        job.started = time.monotonic()
+        # In the task itself, and not scattered: data of a lost worker are made again only if a task made them.
+        with warnings.catch_warnings():
+            warnings.filterwarnings("ignore", message="Sending large graph")
+            job.scene = self._submit("scene", self._work.load, pickle.dumps(job.world, protocol=5))
+        _, top, _, height = job.region
+        known = None if self._known is None else self._known * job.pixels * job.world.spp
+        if known is not None:
+            # Pictures like the ones before need no trials, and no more tasks than are worth it.
+            count = min(count, math.ceil(known / self._wanted))
+        for rows in plan.bands(top, top + height, count):
+            band = Band(rows, job.world.spp)
+            job.bands.append(band)
+            if self._known is None:
+                self._try(job, band)
+            else:
+                width = job.region[2]
+                band.measured((0, 1), self._known * width * (rows[1] - rows[0]), math.inf)
+                self._finish(job, band)
+
+    def _learn(self, job: Job) -> None:
+        """Take what a picture took as what the next ones will."""
+        seconds = sum(part.seconds for part in job.parts)
+        self._known = max(seconds / (job.pixels * job.world.spp), 1e-12)
+
+    def _try(self, job: Job, band: Band) -> None:
+        """Render some samples to see how long they take."""
+        samples = band.trial(self._wanted)
+        part, cost = self._render(job, band.rows, samples, 0)
+
+        def arrived(future: Future) -> None:
+            seconds, _ = self._count(job, band.rows, samples, future)
+            band.parts.append(part)
+            band.asked = samples[1]
+            band.measured(samples, seconds, self._wanted)
+            if band.rest == 0:
+                self._collect(job, band, self._join(band.parts, 0))
+            elif not band.is_sure:
+                self._try(job, band)
+            else:
+                smaller = band.split(self._wanted)
+                if smaller != [band]:
+                    job.bands += smaller
+                    self._collect(job, band, self._join(band.parts, 0))
+                for each in smaller:
+                    self._finish(job, each)
+
+        self._wait(job, cost, arrived)
+
+    def _finish(self, job: Job, band: Band) -> None:
+        """Hand out all that is left of a band, and how it is joined: pass by pass, in trees."""
+        assert band.seconds is not None, "it has been measured"
+        there = list(band.parts)
+        for number, samples in enumerate(plan.passes((band.asked, band.spp))):
+            leaves = []
+            for chunk in plan.chunks(samples, self._wanted / max(band.seconds, 1e-12)):
+                part, cost = self._render(job, band.rows, chunk, -number)
+                leaves.append(part)
+                self._wait(job, cost, partial(self._count, job, band.rows, chunk))
+            while len(leaves) > plan.FAN_IN:
+                leaves = [
+                    self._join(leaves[at : at + plan.FAN_IN], -number) for at in range(0, len(leaves), plan.FAN_IN)
+                ]
+            there = [self._join([*there, *leaves], -number)]
+            if samples[1] < band.spp:
+                self._wait(job, there[0], lambda future: band.parts.__setitem__(slice(None), [future]))
+        band.asked = band.spp
+        self._collect(job, band, there[0])
+
+    def _collect(self, job: Job, band: Band, part: Future) -> None:
+        """Fetch a band when it is done."""
+
+        def arrived(future: Future) -> None:
+            job.parts.append(future.result())
+            band.parts = []
+
+        self._wait(job, part, arrived)
+
+    def _render(self, job: Job, rows: Range, samples: Range, priority: int) -> tuple[Future, Future]:
+        """Return a part, and what it costs."""
+        part = self._submit("render", self._work.render, job.scene, job.crop, rows, samples, priority=priority)
+        return part, self._submit("cost", self._work.cost, part, priority=priority)
+
+    def _join(self, parts: Sequence[Any], priority: int) -> Future:
+        return parts[0] if len(parts) == 1 else self._submit("join", self._work.join, list(parts), priority=priority)
+
+    def _submit(self, what: str, function: Callable[..., Any], *arguments: Any, priority: int = 0) -> Future:
+        self._tasks += 1
+        key = f"snell-{what}-{self._run}-{self._tasks}"
+        return self.client.submit(function, *arguments, key=key, priority=priority)
+
+    def _wait(self, job: Job, future: Future, arrived: Callable[[Future], object]) -> None:
+        job.open += 1
+        self._waiting[future.key] = job, future, arrived
+        self._arrivals.add(future)
+
+    def _count(self, job: Job, rows: Range, samples: Range, future: Future) -> tuple[float, int]:
+        """Count what has been rendered."""
+        seconds, rays = future.result()
+        job.samples_done += (rows[1] - rows[0]) * job.region[2] * (samples[1] - samples[0])
+        job.rays += rays
+        return seconds, rays
+
+    def _take(self, future: Future) -> None:
+        """Do what is to be done with what has come back."""
+        job, _, arrived = self._waiting.pop(future.key)
+        if future.status == "error":
+            raise _failed(future.exception())
+        if future.status != "finished":
+            message = f"the cluster has let go of a task: it is {future.status}"
+            raise RenderError([(None, message, "was it restarted, or cancelled by somebody else?")])
+        arrived(future)
+        job.open -= 1
+        self._watch()
+
+
+def _checked(client: object) -> Client:
+    """Return a client that can be waited for.
+
+    Raises
+    ------
+    SceneError
+        If it is none.
+    """
+    try:
+        from distributed import Client  # noqa: PLC0415 # nobody else needs it
+    except ImportError as error:
+        help = 'python -m pip install "snell[cluster]"'
+        raise SceneError([("client", f"Dask is not installed: {error}", help)]) from None
+    if not isinstance(client, Client):
+        help = "like distributed.Client(), which starts a cluster of this machine's processors"
+        raise SceneError([("client", f"expected a client of Dask, read {client!r}", help)])
+    if client.asynchronous:
+        raise SceneError(
+            [("client", "an asynchronous client cannot be waited for", "use one without asynchronous=True")]
+        )
+    return client
+
+
+def _failed(error: BaseException) -> BaseException:
+    """Return what is said of a task that failed."""
+    from distributed import KilledWorker  # noqa: PLC0415 # it is there
+
+    if isinstance(error, SnellError):
+        return error
+    if isinstance(error, KilledWorker):
+        message = (
+            f"a task was given up: it has ended {error.allowed_failures + 1} workers, the last one {error.last_worker}"
+        )
+        help = (
+            "most often their memory was full, which their logs say: give them more, or choose a smaller task_seconds"
+        )
+        return RenderError([(None, message, help)])
+    is_other = isinstance(error, ImportError | AttributeError)
+    help_of_version = "all workers need Snell, and the same version of it" if is_other else None
+    return RenderError([(None, f"a task failed: {type(error).__name__}: {error}", help_of_version)])
