@@ -297,7 +297,7 @@ fn one(name: &str, args: &RenderArgs, output: &Path, inputs: &mut Vec<PathBuf>) 
         output = &unfinished;
     }
     let before = ready.recipe.film_sha256.take();
-    let written = ready.write(&rendered, args, output);
+    let written = ready.save_anywhere(&rendered, args, output);
     RENDERING.store(false, Ordering::Relaxed);
     written?;
     summary(&ready, &rendered, args, &options, output, seconds);
@@ -372,21 +372,28 @@ impl Ready {
         })
     }
 
-    /// Writes the picture with its recipe, or keeps it elsewhere.
-    pub fn write(&mut self, rendered: &Rendered, args: &RenderArgs, output: &Path) -> Outcome {
-        let writing = phase(args, "writing", &output::shown(output));
+    /// Writes the picture with its recipe.
+    pub fn save(&mut self, rendered: &Rendered, args: &RenderArgs, output: &Path) -> Outcome {
+        let _writing = phase(args, "writing", &output::shown(output));
         self.recipe.remember(&rendered.film);
-        let (format, encoding) = (self.format, self.compiled.scene().render.encoding());
         let text = self.recipe.to_json();
-        let written =
-            output::write(output, |out| picture::write_to(out, format, &rendered.film, encoding, Some(&text)));
-        drop(writing);
-        written.map_err(|Failure { code, mut reports }| {
+        let (format, encoding) = (self.format, self.encoding());
+        output::write(output, |out| picture::write_to(out, format, &rendered.film, encoding, Some(&text)))
+    }
+
+    /// The same, or keeps it elsewhere.
+    pub fn save_anywhere(&mut self, rendered: &Rendered, args: &RenderArgs, output: &Path) -> Outcome {
+        self.save(rendered, args, output).map_err(|Failure { code, mut reports }| {
             if let Some(report) = reports.pop() {
-                reports.push(rescue(report, output, format, rendered, encoding, &text));
+                let text = self.recipe.to_json();
+                reports.push(rescue(report, output, self.format, rendered, self.encoding(), &text));
             }
             Failure { code, reports }
         })
+    }
+
+    fn encoding(&self) -> Encoding {
+        self.compiled.scene().render.encoding()
     }
 
     /// What is odd about the picture.

@@ -279,8 +279,11 @@ impl<'a> Many<'a> {
         if !rendered.film.is_finished() {
             return Err(Failure { code: INTERRUPTED, reports: Vec::new() }.into());
         }
+        // A machine whose locks are not seen here may take a file that is being written for abandoned: once more.
+        let written = ready.save(&rendered, self.args, &output);
+        let written = written.or_else(|_| ready.save_anywhere(&rendered, self.args, &output));
         // Where one cannot be written, the next one would be drawn for nothing too.
-        ready.write(&rendered, self.args, &output).map_err(Trouble::All)?;
+        written.map_err(Trouble::All)?;
         drop(claim);
         self.warn_of_picture(&output, &ready.odd(&rendered));
         self.tally.rays += rendered.statistics.rays.total();
