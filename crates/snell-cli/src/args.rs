@@ -111,7 +111,7 @@ pub struct RenderArgs {
     #[arg(long, value_name = "TIME", value_parser = duration, help_heading = "Parts")]
     pub until: Option<Duration>,
 
-    /// A picture for each value of a key: A:B:N, N numbers evenly from A to B, or a list, like ["BK7", "SF10"]; given many times,
+    /// A picture for each value of a key: A:B:N, N numbers evenly from A to B, or a list, like `["BK7", "SF10"]`; given many times,
     /// for all combinations; what is finished is skipped, and several machines may run the same command on one folder
     #[arg(long, value_name = "KEY=VALUES", conflicts_with_all = MANY_NOT, help_heading = "Many pictures")]
     pub sweep: Vec<String>,

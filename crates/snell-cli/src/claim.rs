@@ -22,7 +22,7 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant, SystemTime};
 
 /// A claim that has not been written for so long is stale.
-const STALE: Duration = Duration::from_secs(60);
+const STALE: Duration = Duration::from_mins(1);
 
 /// For tests: another time for that, in seconds.
 const STALE_VARIABLE: &str = "SNELL_CLAIM_SECONDS";

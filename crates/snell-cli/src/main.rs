@@ -29,6 +29,7 @@ mod merge;
 mod output;
 mod paths;
 mod progress;
+mod ready;
 mod recipe;
 mod render;
 mod say;

@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Output, Stdio};
 use std::time::{Duration, Instant, SystemTime};
 
-/// Two keys, and four pictures: a_1.3_4.png …
+/// Two keys, and four pictures: `a_1.3_4.png` …
 const SWEEP: &[&str] = &[
     "render",
     "scene.toml",

@@ -4,7 +4,7 @@
 //!  Sweep ── of each picture: changes, a name
 //!    │
 //!    ▼          is it there?             may I?         is it there now?
-//!  picture ──▶ there::look ── no ──▶ Claims::take ──▶ there::look ── no ──▶ render::prepare, trace, write
+//!  picture ──▶ there::look ── no ──▶ Claims::take ──▶ there::look ── no ──▶ ready::prepare, trace, save
 //!                 │ yes                  │ no              │ yes
 //!                 ▼                      ▼                 ▼
 //!              skipped          later again, at the end   skipped
@@ -18,6 +18,7 @@ use crate::claim::{Claims, Taken};
 use crate::input;
 use crate::output::{is_standard, refuse_inputs};
 use crate::progress::Reporter;
+use crate::ready::{self, Ready};
 use crate::recipe::{of_scene, of_text};
 use crate::render::{self, CANCEL, RENDERING, quiet, stem};
 use crate::say::{self, FAILED, Failure, INTERRUPTED, OrFail, Outcome, SCENE, USAGE, tell};
@@ -272,7 +273,7 @@ impl<'a> Many<'a> {
         disk::check_writable(&output).or_fail(FAILED)?;
         self.event(number, "drawing");
         let before = self.before.take().filter(|_| self.args.bvh == Quality::default());
-        let mut ready = render::prepare(recipe, loaded, before.as_ref(), self.args, &output)?;
+        let mut ready = ready::prepare(recipe, loaded, before.as_ref(), self.args, &output)?;
         drop(before);
         self.warn(&ready.warnings);
         let rendered = self.trace(&ready)?;
@@ -309,7 +310,7 @@ impl<'a> Many<'a> {
         }
     }
 
-    fn trace(&self, ready: &render::Ready) -> Result<snell::render::Rendered, Failure> {
+    fn trace(&self, ready: &Ready) -> Result<snell::render::Rendered, Failure> {
         let (done, total, rays) = (self.tally.drawn(), self.tally.to_draw(), self.tally.rays);
         let one =
             (self.args.progress == ProgressKind::Json).then(|| Reporter::new(self.args.progress, self.args.quiet, ""));
@@ -322,7 +323,7 @@ impl<'a> Many<'a> {
                 rays: rays + progress.rays,
             }),
         };
-        ready.trace(&render::options(self.args, &ready.recipe, &update))
+        ready.trace(&ready::options(self.args, &ready.recipe, &update))
     }
 
     /// Says what is odd about a scene, but nothing twice.

@@ -12,9 +12,14 @@ use std::sync::{Arc, Mutex};
 #[derive(Debug, Default)]
 pub struct Cache {
     models: Mutex<HashMap<PathBuf, Arc<Parsed>>>,
-    /// By file, and whether its curve was decoded; with the SHA-256 of the file.
-    images: Mutex<HashMap<(PathBuf, bool), (Arc<Image>, String)>>,
+    images: Mutex<HashMap<ImageFile, ImageWithHash>>,
 }
+
+/// A file, and whether its curve is decoded.
+pub(super) type ImageFile = (PathBuf, bool);
+
+/// What was read, and the SHA-256 of the file.
+pub(super) type ImageWithHash = (Arc<Image>, String);
 
 /// A model as its file has it.
 #[derive(Debug)]
@@ -49,11 +54,11 @@ impl Cache {
         }
     }
 
-    pub(super) fn image(&self, file: &(PathBuf, bool)) -> Option<(Arc<Image>, String)> {
+    pub(super) fn image(&self, file: &ImageFile) -> Option<ImageWithHash> {
         self.images.lock().ok()?.get(file).cloned()
     }
 
-    pub(super) fn keep_image(&self, file: &(PathBuf, bool), image: &Arc<Image>, sha256: &str) {
+    pub(super) fn keep_image(&self, file: &ImageFile, image: &Arc<Image>, sha256: &str) {
         if let Ok(mut images) = self.images.lock() {
             images.insert(file.clone(), (Arc::clone(image), sha256.to_owned()));
         }

@@ -30,12 +30,11 @@ impl<'a> PictureReader<'a> {
     pub fn read(&mut self, files: &dyn Files, name: &str, path: &Path, srgb: bool) -> Result<Arc<Image>, Report> {
         let key = (path.to_owned(), srgb);
         if !self.images.contains_key(&key) {
-            let (image, sha256) = match self.cache.and_then(|cache| cache.image(&key)) {
-                Some(known) => known,
-                None => {
-                    let (image, sha256) = read_with_hash(files, path, srgb)?;
-                    (Arc::new(image), sha256)
-                }
+            let (image, sha256) = if let Some(known) = self.cache.and_then(|cache| cache.image(&key)) {
+                known
+            } else {
+                let (image, sha256) = read_with_hash(files, path, srgb)?;
+                (Arc::new(image), sha256)
             };
             if let Some(cache) = self.cache {
                 cache.keep_image(&key, &image, &sha256);

@@ -137,8 +137,11 @@ fn interpolation(item: Option<&Item>, source: &Source) -> Result<Interpolation, 
     })
 }
 
+/// A key frame, and where it stands.
+type PlacedTable<'a> = (&'a dyn TableLike, Range<usize>);
+
 /// The key frames, as they stand in the file.
-fn tables<'a>(root: &'a dyn TableLike, source: &Source) -> Result<Vec<(&'a dyn TableLike, Range<usize>)>, Report> {
+fn tables<'a>(root: &'a dyn TableLike, source: &Source) -> Result<Vec<PlacedTable<'a>>, Report> {
     match root.get("frame") {
         None => Ok(Vec::new()),
         Some(Item::ArrayOfTables(tables)) => {

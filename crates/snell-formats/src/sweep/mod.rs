@@ -48,15 +48,13 @@ impl Sweep {
         let frames = frames.or(keys.as_ref().map(KeyFrames::range)).unwrap_or([0, 0]);
         let frame_count = (u64::from(frames[1]) + 1).saturating_sub(frames[0].into()) as usize;
         let count = axes.iter().try_fold(frame_count, |count, axis| count.checked_mul(axis.values.len()));
-        match count.filter(|count| *count <= MOST_PICTURES) {
-            Some(count) => Ok(Self { axes, keys, frames, count }),
-            None => {
-                let factors = axes.iter().map(|axis| axis.values.len()).chain(keys.is_some().then_some(frame_count));
-                let factors: Vec<String> = factors.map(|factor| factor.to_string()).collect();
-                let message = format!("{} pictures are more than {MOST_PICTURES}", factors.join(" x "));
-                Err(Report::error(message).help("ask for fewer values or frames"))
-            }
-        }
+        let Some(count) = count.filter(|count| *count <= MOST_PICTURES) else {
+            let factors = axes.iter().map(|axis| axis.values.len()).chain(keys.is_some().then_some(frame_count));
+            let factors: Vec<String> = factors.map(|factor| factor.to_string()).collect();
+            let message = format!("{} pictures are more than {MOST_PICTURES}", factors.join(" x "));
+            return Err(Report::error(message).help("ask for fewer values or frames"));
+        };
+        Ok(Self { axes, keys, frames, count })
     }
 
     /// How many pictures there are, at least one.

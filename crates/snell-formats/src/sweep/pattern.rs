@@ -57,13 +57,13 @@ impl Sweep {
 
     fn name(&self, parts: &[Part], number: usize) -> Result<String, Report> {
         let steps = self.steps(number);
-        let width = |largest: usize| largest.to_string().len();
+        let padded = |number: usize, largest: usize| format!("{number:0w$}", w = largest.to_string().len());
         let mut name = String::new();
         for part in parts {
             match part {
                 Part::Text(text) => name += text,
-                Part::Frame => name += &format!("{:0w$}", self.frame(number), w = width(self.frames[1] as usize)),
-                Part::Index => name += &format!("{number:0w$}", w = width(self.count - 1)),
+                Part::Frame => name += &padded(self.frame(number) as usize, self.frames[1] as usize),
+                Part::Index => name += &padded(number, self.count - 1),
                 Part::Axis(axis) => match &self.axes[*axis].values[steps[*axis]].name {
                     Ok(value) => name += value,
                     Err(why) => {
