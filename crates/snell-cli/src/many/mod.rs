@@ -272,7 +272,7 @@ impl<'a> Many<'a> {
         refuse_inputs(&output, self.inputs.iter().map(PathBuf::as_path))?;
         disk::check_writable(&output).or_fail(FAILED)?;
         self.event(number, "drawing");
-        let before = self.before.take().filter(|_| self.args.bvh == Quality::default());
+        let before = self.before.take();
         let mut ready = ready::prepare(recipe, loaded, before.as_ref(), self.args, &output)?;
         drop(before);
         self.warn(&ready.warnings);
@@ -288,7 +288,9 @@ impl<'a> Many<'a> {
         drop(claim);
         self.warn_of_picture(&output, &ready.odd(&rendered));
         self.tally.rays += rendered.statistics.rays.total();
-        self.before = Some(ready.compiled);
+        // What is shared has a tree of the usual quality.
+        let is_shared = self.sweep.keeps_shapes() && self.args.bvh == Quality::default();
+        self.before = is_shared.then_some(ready.compiled);
         Ok(Turn::Drawn)
     }
 

@@ -325,8 +325,7 @@ fn shape(value: &Value, numbers: &mut Vec<f64>) -> Option<Shape> {
     match value {
         // A whole number that is none of `f64` holds, bits included.
         Value::Integer(whole) => {
-            let number = *whole.value() as f64;
-            (number.abs() <= MOST_WHOLE).then(|| numbers.push(number))?;
+            (whole.value().unsigned_abs() <= MOST_WHOLE as u64).then(|| numbers.push(*whole.value() as f64))?;
             Some(Shape::One)
         }
         Value::Float(float) => {

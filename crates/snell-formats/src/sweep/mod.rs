@@ -46,7 +46,11 @@ impl Sweep {
         let keys = keys.map(KeyFrames::parse).transpose()?;
         refuse_overlap(axes.iter().map(|axis| &axis.key).chain(keys.iter().flat_map(KeyFrames::scene_keys)))?;
         let frames = frames.or(keys.as_ref().map(KeyFrames::range)).unwrap_or([0, 0]);
-        let frame_count = (u64::from(frames[1]) + 1).saturating_sub(frames[0].into()) as usize;
+        if frames[0] > frames[1] {
+            let message = format!("frames go from the first to the last, and {} is behind {}", frames[0], frames[1]);
+            return Err(Report::error(message));
+        }
+        let frame_count = usize::try_from(u64::from(frames[1] - frames[0]) + 1).unwrap_or(usize::MAX);
         let count = axes.iter().try_fold(frame_count, |count, axis| count.checked_mul(axis.values.len()));
         let Some(count) = count.filter(|count| *count <= MOST_PICTURES) else {
             let factors = axes.iter().map(|axis| axis.values.len()).chain(keys.is_some().then_some(frame_count));
@@ -77,6 +81,13 @@ impl Sweep {
         let is_text = |text: &str| text.contains(['"', '\'']);
         self.axes.iter().flat_map(|axis| &axis.values).any(|value| is_text(&value.text))
             || self.keys.as_ref().is_some_and(|keys| keys.held().any(is_text))
+    }
+
+    /// Do all pictures have the same shapes in the same places, so that they may share a tree over them?
+    pub fn keeps_shapes(&self) -> bool {
+        let keys = self.axes.iter().map(|axis| &axis.key).chain(self.keys.iter().flat_map(KeyFrames::scene_keys));
+        let is_shape = |key: &SceneKey| SHAPES.contains(&key.parts[0].as_str());
+        !keys.into_iter().any(is_shape)
     }
 
     /// Makes the changes in a copy of the scene, to find those that it does not take: each of the first values of an axis, and each
@@ -121,6 +132,9 @@ impl Sweep {
         steps
     }
 }
+
+/// The lists of shapes in a scene.
+const SHAPES: [&str; 6] = ["sphere", "mesh", "plane", "box", "disc", "lathe"];
 
 /// So many values of an axis are tried before anything is drawn.
 const MOST_CHECKED: usize = 1000;

@@ -208,6 +208,20 @@ fn keys_are_tried_on_the_scene() {
 }
 
 #[test]
+fn what_pictures_share_is_known_by_their_keys() {
+    let of = |axes: &[&str], keys: Option<&str>| {
+        let sweep = sweep(axes, keys, None).unwrap();
+        (sweep.keeps_shapes(), sweep.has_texts())
+    };
+    assert_eq!(of(&["camera.eye=[[0, 0, 1]]"], Some(KEYS_WITH_TEXT)), (true, true));
+    assert_eq!(of(&["material.m.eta=1:2:3"], Some(&key_frames("linear", &[(1, 0.0)]))), (true, false));
+    assert_eq!(of(&["mesh.1.file=['a.obj']"], None), (false, true));
+    assert_eq!(of(&[], Some("[[frame]]\nat = 1\nsphere.1.radius = 3")), (false, false));
+}
+
+const KEYS_WITH_TEXT: &str = "[[frame]]\nat = 1\nsky.image = 'a.png'";
+
+#[test]
 fn names() {
     let keys = key_frames("linear", &[(8, 0.0), (10, 1.0)]);
     let of = |axes: &[&str], keys: Option<&str>, pattern: &str| {
