@@ -187,6 +187,7 @@ fn hostile_key_frames() {
     place("[[frame]]\nat = 1\na.b = 1\na = 2", "");
     let deep = format!("[[frame]]\nat = 1\na = {}1{}", "[".repeat(10_000), "]".repeat(10_000));
     place(&deep, "");
+    refused(sweep(&[], Some("[[frame]]\nat = 1\na = 1"), Some([240, 1])), "240 is behind 1");
     refused(
         sweep(&[], Some("[[frame]]\nat = 4294967295\na = 1\n[[frame]]\nat = 0\na = 1"), None),
         "4294967296 pictures",
