@@ -71,12 +71,15 @@ Examples:
   snell render - -o - --format ppm < scene.toml > picture.ppm
   snell render scene.toml --spp 4096 --checkpoint work.npz --until 2h -o night.exr
   snell render --resume work.npz -o night.exr
-  snell render scene.toml --spp 64 --rows 0:256 --part top.npz")]
+  snell render scene.toml --spp 64 --rows 0:256 --part top.npz
+  snell render scene.toml --sweep material.glass.eta=1.3:1.7:9 -o 'glass_{eta}.png'
+  snell render scene.toml --keys camera.toml --frames 1:240 -o 'movie/{frame}.png'")]
 pub struct RenderArgs {
     /// Scene files, driver files, or names of built-in scenes; - is standard input
     #[arg(required_unless_present_any = ["from", "resume"], value_name = "SCENE", value_parser = SceneName, hide_possible_values = true)]
     pub scenes: Vec<String>,
-    /// The picture, or a folder for many; the ending decides the format: .png .ppm .exr .npy; - is standard output
+    /// The picture, or a folder for many; the ending decides the format: .png .ppm .exr .npy; - is standard output; of many
+    /// pictures the pattern of their names, with {frame}, {index} and {KEY}
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
     /// Format of the pictures in a folder, and on standard output
@@ -107,6 +110,17 @@ pub struct RenderArgs {
     /// Stop after this time, and keep what is done
     #[arg(long, value_name = "TIME", value_parser = duration, help_heading = "Parts")]
     pub until: Option<Duration>,
+
+    /// A picture for each value of a key: A:B:N, N numbers evenly from A to B, or a list, like `["BK7", "SF10"]`; given many times,
+    /// for all combinations; what is finished is skipped, and several machines may run the same command on one folder
+    #[arg(long, value_name = "KEY=VALUES", conflicts_with_all = MANY_NOT, help_heading = "Many pictures")]
+    pub sweep: Vec<String>,
+    /// A picture for each frame, by key frames of the camera or any other key in a file
+    #[arg(long, visible_alias = "path", value_name = "FILE.toml", conflicts_with_all = MANY_NOT, help_heading = "Many pictures")]
+    pub keys: Option<PathBuf>,
+    /// Frames from the first one to the last one, both included; from the first key frame to the last if left out
+    #[arg(long, value_name = "A:B", requires = "keys", value_parser = frames, help_heading = "Many pictures")]
+    pub frames: Option<[u32; 2]>,
 
     /// Width and height in pixels; a shape other than the scene's shows more of it, unless `--stretch` is given
     #[arg(long, value_name = "WxH", value_parser = size, help_heading = "Picture")]
@@ -410,6 +424,9 @@ pub struct CheckArgs {
     pub json: bool,
 }
 
+/// What is of one picture only.
+const MANY_NOT: [&str; 8] = ["from", "part", "checkpoint", "every", "resume", "until", "paths", "only"];
+
 /// Edge of a tile in pixels, if nobody says: that of the library.
 const TILE: u32 = snell::render::TILE_SIZE;
 
@@ -507,6 +524,14 @@ fn range(text: &str) -> Result<[u32; 2], String> {
         .and_then(|(first, end)| Some([number(first)?, number(end)?]))
         .filter(|[first, end]| first < end)
         .ok_or_else(|| "expected the first one and the one behind the last, like 0:512".to_owned())
+}
+
+fn frames(text: &str) -> Result<[u32; 2], String> {
+    let number = |text: &str| text.trim().parse::<u32>().ok();
+    text.split_once(':')
+        .and_then(|(first, last)| Some([number(first)?, number(last)?]))
+        .filter(|[first, last]| first <= last)
+        .ok_or_else(|| "expected the first frame and the last one, both included, like 1:240".to_owned())
 }
 
 fn duration(text: &str) -> Result<Duration, String> {

@@ -15,6 +15,7 @@
 
 mod args;
 mod check;
+mod claim;
 mod convert;
 mod diff;
 mod excerpt;
@@ -22,10 +23,13 @@ mod explain;
 mod info;
 mod input;
 mod kept;
+mod machine;
+mod many;
 mod merge;
 mod output;
 mod paths;
 mod progress;
+mod ready;
 mod recipe;
 mod render;
 mod say;

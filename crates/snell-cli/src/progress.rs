@@ -71,6 +71,21 @@ impl Reporter {
         }
     }
 
+    /// Says which of many things is being done.
+    pub fn now(&self, what: String) {
+        if let Self::Bar(bar) = self {
+            bar.set_prefix(what);
+        }
+    }
+
+    /// Says something while there may be a bar.
+    pub fn aside(&self, say: impl FnOnce()) {
+        match self {
+            Self::Bar(bar) => bar.suspend(say),
+            _ => say(),
+        }
+    }
+
     pub fn finish(&self) {
         if let Self::Bar(bar) = self {
             bar.finish_and_clear();

@@ -4,10 +4,11 @@ use crate::args::{ExplainArgs, ReadingArgs, RenderArgs};
 use crate::input;
 use crate::say::{FAILED, Failure, OrFail, Outcome, SCENE};
 use snell::explain::text::six_digits;
-use snell_formats::load::Loaded;
+use snell_formats::load::{Cache, Loaded, load_text};
 use snell_formats::recipe::{Changes, OldDefault, Recipe};
 use snell_formats::{LoadOptions, Report};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 impl From<&RenderArgs> for Changes {
     fn from(args: &RenderArgs) -> Self {
@@ -47,6 +48,23 @@ pub fn of_scene(name: &str, reading: &ReadingArgs, changes: &Changes) -> Result<
     let options =
         LoadOptions { set: changes.set.clone(), integrator: changes.integrator, ..LoadOptions::from(reading) };
     let loaded = input::scene(name, &options)?;
+    Ok((Recipe::of(&loaded, &options, changes), loaded))
+}
+
+/// Makes another scene of a text that was read before.
+pub fn of_text(
+    base: &Loaded,
+    reading: &ReadingArgs,
+    cache: &Arc<Cache>,
+    changes: &Changes,
+) -> Result<(Recipe, Loaded), Failure> {
+    let options = LoadOptions {
+        set: changes.set.clone(),
+        integrator: changes.integrator,
+        cache: Some(Arc::clone(cache)),
+        ..LoadOptions::from(reading)
+    };
+    let loaded = load_text(base.source.clone(), base.kind, &base.folder, &options).or_fail(SCENE)?;
     Ok((Recipe::of(&loaded, &options, changes), loaded))
 }
 

@@ -1,26 +1,25 @@
 //! `snell render`.
 
 use crate::args::{ProgressKind, RenderArgs};
+use crate::claim;
 use crate::input::{self, what_is};
 use crate::kept;
+use crate::many;
 use crate::output::{self, beside, is_standard, refuse_inputs};
 use crate::paths;
-use crate::progress::{Phase, Reporter, short};
-use crate::recipe::{of_picture, of_scene, same_film, short_hash, widened};
+use crate::progress::{Reporter, short};
+use crate::ready::{Ready, format, options, phase, prepare};
+use crate::recipe::{of_picture, of_scene, same_film, short_hash};
 use crate::say::{self, FAILED, Failure, INTERRUPTED, OrFail, Outcome, SCENE, USAGE, tell};
 use crate::signals;
 use serde_json::json;
-use snell::explain::black_picture;
-use snell::film::transfer::Encoding;
-use snell::film::{BYTES_PER_PIXEL, Crop};
-use snell::render::{Options, RenderError, Rendered, Settings, render};
-use snell::scene::{Warning, WarningCode};
-use snell::world::World;
+use snell::render::{Options, Rendered};
+use snell::scene::WarningCode;
 use snell_formats::given::Given;
 use snell_formats::load::Loaded;
-use snell_formats::picture::{self, Format};
+use snell_formats::picture::Format;
 use snell_formats::recipe::{Changes, Recipe};
-use snell_formats::{Report, disk, memory};
+use snell_formats::{Report, disk};
 use std::collections::HashMap;
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
@@ -28,9 +27,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 /// Set by ^C.
-static CANCEL: AtomicBool = AtomicBool::new(false);
+pub static CANCEL: AtomicBool = AtomicBool::new(false);
 /// Is there a part of a picture to save? Before, ^C ends the program at once.
-static RENDERING: AtomicBool = AtomicBool::new(false);
+pub static RENDERING: AtomicBool = AtomicBool::new(false);
 
 /// The first ^C stops the render and saves what is done; before a render, the second time, or while a pipe has no reader, it ends
 /// at once.
@@ -38,6 +37,7 @@ fn interrupt() {
     let something_to_save = RENDERING.load(Ordering::Relaxed) && !disk::is_waiting();
     if !something_to_save || CANCEL.swap(true, Ordering::Relaxed) {
         disk::discard_pending();
+        claim::discard_held();
         if !something_to_save {
             tell("stopped before there was anything to save");
         }
@@ -62,9 +62,12 @@ pub fn run(args: &RenderArgs) -> Outcome {
     if again.is_none() {
         names.iter().try_for_each(|name| refuse_picture(name))?;
     }
-    let outputs = outputs(args, &names)?;
+    let outputs = if many::is_asked(args) { Vec::new() } else { outputs(args, &names)? };
     if !signals::on_interrupt(interrupt) {
         tell("note: ^C cannot be caught here; it would lose the picture");
+    }
+    if many::is_asked(args) {
+        return many::run(args).map_err(|failure| Failure { reports: quiet(failure.reports, args), ..failure });
     }
     if names.len() > 1 {
         keep_all_inputs(args, &names, &outputs)?;
@@ -92,7 +95,7 @@ pub fn run(args: &RenderArgs) -> Outcome {
 }
 
 /// With `--quiet` only the errors.
-fn quiet(mut reports: Vec<Report>, args: &RenderArgs) -> Vec<Report> {
+pub fn quiet(mut reports: Vec<Report>, args: &RenderArgs) -> Vec<Report> {
     reports.retain(|report| report.warning.is_none() || !args.quiet);
     reports
 }
@@ -146,16 +149,6 @@ fn refuse_work(checkpoint: &Path, args: &RenderArgs) -> Outcome {
     Ok(())
 }
 
-/// Which format a picture gets.
-fn format(output: &Path, args: &RenderArgs) -> Result<Format, Failure> {
-    let name = PathBuf::from(format!("picture.{}", args.format));
-    Ok(match Format::of(if is_standard(output) { &name } else { output }).or_fail(USAGE)? {
-        Format::Png { .. } => Format::Png { sixteen_bit: args.bits == Some(16) },
-        Format::Ppm { .. } => Format::Ppm { binary: args.binary },
-        other => other,
-    })
-}
-
 /// A picture for each scene in a folder, which is made if need be.
 fn in_folder(folder: &Path, args: &RenderArgs, names: &[String]) -> Result<Vec<PathBuf>, Failure> {
     if let Err(e) = std::fs::create_dir_all(folder) {
@@ -187,7 +180,7 @@ const ENDINGS: &[&str] = &["txt", "toml", "json", "nff", "png", "exr", "npz"];
 
 /// The name of a scene without its folder and its ending. Only an ending that scene files have is cut off: `eta-1.05` is a whole
 /// name.
-fn stem(name: &str) -> String {
+pub fn stem(name: &str) -> String {
     if name == output::STANDARD {
         return "picture".to_owned();
     }
@@ -241,10 +234,10 @@ fn refuse_picture(name: &str) -> Outcome {
 
 /// Renders one picture. `inputs` are all files that were read for this and the ones before.
 fn one(name: &str, args: &RenderArgs, output: &Path, inputs: &mut Vec<PathBuf>) -> Outcome {
-    let reading = Phase::start(args.progress, args.quiet, "reading", name);
+    let reading = phase(args, "reading", name);
     let read = read(name, args);
     drop(reading);
-    let (mut recipe, mut loaded) = read?;
+    let (recipe, loaded) = read?;
     // A scene that a picture remembers is not read again, but is somebody's work all the same.
     let read = loaded.files().chain([Path::new(&recipe.name)]).chain(input::standard(name));
     inputs.extend(read.map(Path::to_owned));
@@ -252,49 +245,20 @@ fn one(name: &str, args: &RenderArgs, output: &Path, inputs: &mut Vec<PathBuf>) 
     if let Some(kept) = kept::file(args) {
         refuse_inputs(kept, inputs.iter().map(PathBuf::as_path))?;
     }
-    let bounds = recipe.apply(loaded.scene_mut());
-    recipe.resolve(&loaded.scene);
-    let preparing = Phase::start(args.progress, args.quiet, "preparing", &recipe.name);
-    let compiled = loaded.compile(&recipe.name, args.bvh, args.threads.into()).or_fail(SCENE)?;
-    let world = compiled.world();
-    drop(preparing);
-    let note = bounds.map(|bounds| widened(loaded.scene.render.size, bounds));
-    let widened = note.map(|note| Report::warning(WarningCode::WidenedBounds, note));
-    let warnings: Vec<Report> = widened.into_iter().chain(loaded.warnings_with(world)).collect();
-    warn(&warnings, args);
-    let format = if args.part.is_some() { Format::Npy } else { format(output, args)? };
-    let format = if format == (Format::Png { sixteen_bit: false }) {
-        Format::Png { sixteen_bit: recipe.bits == Some(16) }
-    } else {
-        format
-    };
-    enough_memory(world, recipe.crop)?;
-    if format == Format::Exr && world.camera.size.iter().any(|&n| n > i32::MAX as u32) {
-        let report = Report::error("an EXR picture has at most 2147483647 pixels in a row or column");
-        return Err(Failure::new(USAGE, report));
+    let mut ready = prepare(recipe, loaded, None, args, output)?;
+    warn(&ready.warnings, args);
+    if ready.recipe.paths.is_some() || ready.recipe.only.is_some() {
+        return paths::run(&ready.compiled, ready.recipe, args, output, ready.format);
     }
-
-    if recipe.paths.is_some() || recipe.only.is_some() {
-        return paths::run(&compiled, recipe, args, output, format);
-    }
-    let reporter = Reporter::new(args.progress, args.quiet, &recipe.name);
+    let reporter = Reporter::new(args.progress, args.quiet, &ready.recipe.name);
     let started = Instant::now();
     let progress = |p| {
         RENDERING.store(true, Ordering::Relaxed);
         reporter.update(p);
     };
-    let options = Options {
-        threads: args.threads.into(),
-        tile_size: args.tile,
-        lanes: args.lanes.unwrap_or_default(),
-        crop: recipe.crop,
-        progress: Some(&progress),
-        cancel: Some(&CANCEL),
-        ..Options::default()
-    };
-    let settings = compiled.settings();
+    let options = options(args, &ready.recipe, &progress);
     let rendered = if kept::is_asked(args) {
-        let rendered = kept::render(&compiled, &settings, &recipe, args, &options);
+        let rendered = kept::render(&ready.compiled, &ready.compiled.settings(), &ready.recipe, args, &options);
         RENDERING.store(false, Ordering::Relaxed);
         reporter.finish();
         match rendered? {
@@ -302,10 +266,7 @@ fn one(name: &str, args: &RenderArgs, output: &Path, inputs: &mut Vec<PathBuf>) 
             None => return Ok(()),
         }
     } else {
-        render(world, &settings, &options).map_err(|e| {
-            let code = if matches!(e, RenderError::CropOutside { .. }) { USAGE } else { SCENE };
-            Failure::new(code, Report::error(e.to_string()))
-        })?
+        ready.trace(&options)?
     };
     let seconds = started.elapsed().as_secs_f64();
     reporter.finish();
@@ -322,55 +283,19 @@ fn one(name: &str, args: &RenderArgs, output: &Path, inputs: &mut Vec<PathBuf>) 
         unfinished = beside(output);
         output = &unfinished;
     }
-    let writing = Phase::start(args.progress, args.quiet, "writing", &output::shown(output));
-    let before = recipe.film_sha256.take();
-    recipe.remember(&rendered.film);
-    let encoding = loaded.scene.render.encoding();
-    let text = recipe.to_json();
-    let written = output::write(output, |out| picture::write_to(out, format, &rendered.film, encoding, Some(&text)));
+    let before = ready.recipe.film_sha256.take();
+    let written = ready.save_anywhere(&rendered, args, output);
     RENDERING.store(false, Ordering::Relaxed);
-    drop(writing);
-    if let Err(Failure { code, mut reports }) = written {
-        if let Some(report) = reports.pop() {
-            reports.push(rescue(report, output, format, &rendered, encoding, &text));
-        }
-        return Err(Failure { code, reports });
-    }
-    let mut odd = snell::render::warnings(&rendered.statistics, world, &settings);
-    odd.extend(black_picture(&compiled, &rendered.film));
-    summary(&recipe, world, &settings, &rendered, &odd, args, &options, output, seconds);
+    written?;
+    summary(&ready, &rendered, args, &options, output, seconds);
     if !finished {
         return Err(Failure { code: INTERRUPTED, reports: Vec::new() });
     }
-    same_film(&recipe, before.as_deref())
-}
-
-/// The picture could not be written where it should go: it is kept elsewhere if possible, so that no work is lost.
-fn rescue(
-    report: Report,
-    output: &Path,
-    format: Format,
-    rendered: &Rendered,
-    encoding: Encoding,
-    recipe: &str,
-) -> Report {
-    let ending = match format {
-        Format::Png { .. } => "png",
-        Format::Ppm { .. } => "ppm",
-        Format::Exr => "exr",
-        Format::Npy => "npy",
-    };
-    let stem = output.file_stem().unwrap_or_default().to_string_lossy();
-    let name = format!("{}.{ending}", if is_standard(output) { "picture" } else { &stem });
-    let elsewhere = std::env::temp_dir().join(format!("snell-{}-{name}", std::process::id()));
-    match picture::write(&elsewhere, format, &rendered.film, encoding, Some(recipe)) {
-        Ok(()) => report.help(format!("the picture is kept as {}", elsewhere.display())),
-        Err(_) => report,
-    }
+    same_film(&ready.recipe, before.as_deref())
 }
 
 /// Says what is odd about a scene.
-fn warn(reports: &[Report], args: &RenderArgs) {
+pub fn warn(reports: &[Report], args: &RenderArgs) {
     match args.progress {
         _ if args.quiet => {}
         ProgressKind::Json => {
@@ -392,25 +317,16 @@ fn warn(reports: &[Report], args: &RenderArgs) {
 }
 
 /// Says what was done.
-#[expect(clippy::too_many_arguments, reason = "all that there is to say")]
-fn summary(
-    recipe: &Recipe,
-    world: &World,
-    settings: &Settings,
-    rendered: &Rendered,
-    odd: &[Warning],
-    args: &RenderArgs,
-    options: &Options<'_>,
-    output: &Path,
-    seconds: f64,
-) {
+fn summary(ready: &Ready, rendered: &Rendered, args: &RenderArgs, options: &Options<'_>, output: &Path, seconds: f64) {
+    let (recipe, world, settings) = (&ready.recipe, ready.compiled.world(), ready.compiled.settings());
+    let odd = ready.odd(rendered);
     let film = &rendered.film;
     let statistics = &rendered.statistics;
     let (rays, lost) = (statistics.rays, statistics.lost);
     let (worst_x, worst_y) = lost.worst_pixel(world.camera.size[0]);
     let hash = recipe.film_sha256.as_deref();
     if args.progress == ProgressKind::Json {
-        for warning in odd {
+        for warning in &odd {
             let (code, message) = (warning.code.code(), &warning.message);
             tell(&json!({ "event": "warning", "code": code, "message": message, "place": null }).to_string());
         }
@@ -448,20 +364,7 @@ fn summary(
     if lost.rays > 0 && settings.max_depth == 0 {
         tell("  depth 0: mirrors and glass send no rays on");
     }
-    for warning in odd {
+    for warning in &odd {
         tell(&format!("  {warning}{}", say::advice(warning.code)));
     }
-}
-
-/// Refuses a film that would not fit into the memory that is free, where the system says how much that is.
-fn enough_memory(world: &World, crop: Option<Crop>) -> Outcome {
-    let [width, height] = crop.map_or(world.camera.size, |c| [c.width, c.height]);
-    if width > world.camera.size[0] || height > world.camera.size[1] {
-        // Such a crop does not fit, which is said later.
-        return Ok(());
-    }
-    let needed = u64::from(width).saturating_mul(u64::from(height)).saturating_mul(BYTES_PER_PIXEL);
-    memory::check(&format!("a picture of {width} x {height} pixels"), needed)
-        .map_err(|report| report.help("choose a smaller --size, or render parts with --crop"))
-        .or_fail(SCENE)
 }

@@ -50,6 +50,7 @@ pub mod report;
 pub mod scene_file;
 #[cfg(feature = "schemars")]
 pub mod schema;
+pub mod sweep;
 pub mod text;
 pub mod texture;
 mod words;

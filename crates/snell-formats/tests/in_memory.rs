@@ -5,7 +5,7 @@
 use snell::film::{Crop, Film, Rgb};
 use snell::scene::{Integrator, Render, Scene};
 use snell_formats::files::{Disk, Files, InMemory};
-use snell_formats::load::{Kind, load_text};
+use snell_formats::load::{Cache, Kind, Loaded, load_text};
 use snell_formats::{LoadOptions, Report, Source, picture};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -89,4 +89,29 @@ fn files_in_memory_are_read_like_those_on_disk() {
 
     let none: Vec<PathBuf> = InMemory::default().list(Path::new("")).collect();
     assert!(none.is_empty() && loaded(InMemory::default(), home, SCENE).is_err());
+}
+
+#[test]
+fn with_a_cache_files_are_read_once_and_the_scene_is_the_same() {
+    let mut memory = InMemory::default();
+    for (name, bytes) in files() {
+        memory.insert(name, bytes);
+    }
+    let cache = Arc::new(Cache::default());
+    let load = |memory: &InMemory, cache: Option<&Arc<Cache>>| {
+        let options =
+            LoadOptions { files: Arc::new(memory.clone()), cache: cache.map(Arc::clone), ..LoadOptions::default() };
+        load_text(Source::new("scene.toml", SCENE), Kind::Toml, Path::new("scenes"), &options).unwrap()
+    };
+    let said = |loaded: &Loaded| format!("{:?} {:?} {:?}", loaded.scene, loaded.models, loaded.warnings);
+    let alone = load(&memory, None);
+    let [first, second] = [(); 2].map(|()| load(&memory, Some(&cache)));
+    assert_eq!([said(&first), said(&second)], [said(&alone), said(&alone)]);
+    let geometry = |loaded: &Loaded| loaded.scene.meshes[0].geometry.clone().unwrap();
+    assert!(Arc::ptr_eq(&geometry(&first), &geometry(&second)) && !Arc::ptr_eq(&geometry(&first), &geometry(&alone)));
+
+    memory.insert("scenes/models/one.obj", MODEL.replace("v 1 0 0", "v 2 0 0").into());
+    assert_eq!(said(&load(&memory, Some(&cache))), said(&alone), "what was read stays");
+    cache.keep_only(&[]);
+    assert_ne!(said(&load(&memory, Some(&cache))), said(&alone), "what was forgotten is read again");
 }

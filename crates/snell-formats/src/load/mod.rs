@@ -1,10 +1,12 @@
 //! From a name to a scene with its models: the one way in for scene files, drivers and built-in scenes.
 
+mod cache;
 mod models;
 #[cfg(feature = "disk")]
 mod named;
 mod pictures;
 
+pub use cache::Cache;
 #[cfg(feature = "disk")]
 pub use named::load;
 
@@ -42,6 +44,8 @@ pub struct LoadOptions {
     pub set: Vec<String>,
     /// The model of light, if it is to be another than the scene's; some read more of the materials of models than others.
     pub integrator: Option<Integrator>,
+    /// Models and pictures that were read before, and stay what they were then.
+    pub cache: Option<Arc<Cache>>,
 }
 
 impl Default for LoadOptions {
@@ -50,7 +54,14 @@ impl Default for LoadOptions {
         let files = files::Disk;
         #[cfg(not(feature = "disk"))]
         let files = files::InMemory::default();
-        Self { files: Arc::new(files), search: Vec::new(), dialect: None, set: Vec::new(), integrator: None }
+        Self {
+            files: Arc::new(files),
+            search: Vec::new(),
+            dialect: None,
+            set: Vec::new(),
+            integrator: None,
+            cache: None,
+        }
     }
 }
 
@@ -252,7 +263,8 @@ pub fn load_with(
     fill(&mut scene);
     scene.render.integrator = options.integrator.unwrap_or(scene.render.integrator);
     let finder = Finder { files: &*options.files, search: &options.search };
-    let mut reader = ModelReader::new(folder, finder, dialect, scene.render.integrator, warnings);
+    let cache = options.cache.as_deref();
+    let mut reader = ModelReader::new(folder, finder, dialect, scene.render.integrator, warnings, cache);
     let mut loaded = Loaded {
         scene: Arc::new(scene),
         path: None,
@@ -306,6 +318,14 @@ impl Loaded {
         let (located, others) = world.warnings.split_at(world.warnings.len().min(MOST_PROBLEMS));
         let located = self.places.put_all(located.iter().map(|w| (report(w), w.place.as_slice())).collect());
         self.warnings.iter().cloned().chain(located).chain(others.iter().map(report)).collect()
+    }
+
+    /// The scene with what it is compiled to, where `before` is that of nearly the same scene; see [`CompiledScene::edited`].
+    ///
+    /// # Errors
+    /// As [`world`](Self::world).
+    pub fn compile_after(&self, before: &CompiledScene) -> Result<CompiledScene, Vec<Report>> {
+        before.edited(Arc::clone(&self.scene)).map_err(|problems| self.located(&problems))
     }
 
     /// What the scene is compiled to.

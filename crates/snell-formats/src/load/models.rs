@@ -1,5 +1,6 @@
 //! Models and their materials.
 
+use super::cache::{Cache, Parsed};
 use super::pictures::PictureReader;
 use super::{Loaded, ModelFile};
 use crate::driver::Dialect;
@@ -28,17 +29,16 @@ pub(super) struct ModelReader<'a> {
     /// Scene materials by model and slot, and the number that the next one of a name gets.
     named: HashMap<(PathBuf, String), String>,
     numbers: HashMap<String, usize>,
+    cache: Option<&'a Cache>,
     pub files: Vec<ModelFile>,
-    pub pictures: PictureReader,
+    pub pictures: PictureReader<'a>,
     pub warnings: Vec<Report>,
 }
 
 /// A model that was read, with its libraries.
 struct Read {
-    mesh: Arc<TriangleMesh>,
+    model: Arc<Parsed>,
     libraries: Libraries,
-    has_normals: bool,
-    lost_uv: Option<Report>,
 }
 
 impl<'a> ModelReader<'a> {
@@ -48,6 +48,7 @@ impl<'a> ModelReader<'a> {
         dialect: Option<Dialect>,
         integrator: Integrator,
         warnings: Vec<Report>,
+        cache: Option<&'a Cache>,
     ) -> Self {
         Self {
             folder,
@@ -59,8 +60,9 @@ impl<'a> ModelReader<'a> {
             places: HashMap::new(),
             named: HashMap::new(),
             numbers: HashMap::new(),
+            cache,
             files: Vec::new(),
-            pictures: PictureReader::default(),
+            pictures: PictureReader::new(cache),
             warnings,
         }
     }
@@ -74,18 +76,16 @@ impl<'a> ModelReader<'a> {
         let path = found.path;
         if !self.models.contains_key(&path) {
             let located = |r: Report| if r.place.is_some() { r } else { loaded.places.put(r, &place) };
-            let bytes = self.read(&path)?;
-            let Model { mesh, libraries, has_normals, lost_uv, warnings } =
-                parse_model(&path, &bytes).map_err(located)?;
-            self.warnings.extend(warnings);
-            let libraries = self.libraries(&libraries, &path)?;
-            self.models.insert(path.clone(), Arc::new(Read { mesh: Arc::new(mesh), libraries, has_normals, lost_uv }));
+            let model = self.parsed(&path, located)?;
+            self.warnings.extend(model.warnings.iter().cloned());
+            let libraries = self.libraries(&model.libraries, &path)?;
+            self.models.insert(path.clone(), Arc::new(Read { model, libraries }));
         }
         let read = Arc::clone(&self.models[&path]);
         if loaded.scene.meshes[index].material.is_none() {
             self.give_materials(loaded, index, &path, &read, &place)?;
         }
-        if let Some(report) = &read.lost_uv {
+        if let Some(report) = &read.model.lost_uv {
             // Without a texture nobody looks at them.
             if is_textured(&loaded.scene, &loaded.scene.meshes[index]) {
                 return Err(report.clone());
@@ -94,12 +94,12 @@ impl<'a> ModelReader<'a> {
             let warning = Report { warning: Some(WarningCode::NotDrawn), message, ..report.clone() };
             self.warnings.push(warning);
         }
-        if read.has_normals && !self.is_course && loaded.scene.meshes[index].smooth_angle == 0.0 {
+        if read.model.has_normals && !self.is_course && loaded.scene.meshes[index].smooth_angle == 0.0 {
             let message = format!("the normals of `{}` are not drawn: its faces are flat", path.display());
             let help = "`smooth_angle = 60` in its [[mesh]] smooths all edges of less than 60 degrees";
             self.warnings.push(loaded.places.put(Report::warning(WarningCode::NotDrawn, message).help(help), &place));
         }
-        loaded.scene_mut().meshes[index].geometry = Some(Arc::clone(&read.mesh));
+        loaded.scene_mut().meshes[index].geometry = Some(Arc::clone(&read.model.mesh));
         Ok(Some(path))
     }
 
@@ -111,6 +111,22 @@ impl<'a> ModelReader<'a> {
 
     fn places_of(&mut self, folder: &Path) -> &[PathBuf] {
         self.places.entry(folder.to_owned()).or_insert_with(|| self.finder.places(folder))
+    }
+
+    /// A model, of which `located` says where it is named if it is none.
+    fn parsed(&mut self, path: &Path, located: impl FnOnce(Report) -> Report) -> Result<Arc<Parsed>, Report> {
+        if let Some(known) = self.cache.and_then(|cache| cache.model(path)) {
+            self.files.push(ModelFile { path: path.to_owned(), sha256: known.sha256.clone() });
+            return Ok(known);
+        }
+        let bytes = self.read(path)?;
+        let Model { mesh, libraries, has_normals, lost_uv, warnings } = parse_model(path, &bytes).map_err(located)?;
+        let sha256 = self.files.last().map(|file| file.sha256.clone()).unwrap_or_default();
+        let parsed = Arc::new(Parsed { mesh: Arc::new(mesh), libraries, has_normals, lost_uv, warnings, sha256 });
+        if let Some(cache) = self.cache {
+            cache.keep_model(path, &parsed);
+        }
+        Ok(parsed)
     }
 
     fn read(&mut self, path: &Path) -> Result<Vec<u8>, Report> {
@@ -130,7 +146,8 @@ impl<'a> ModelReader<'a> {
         place: &[Step],
     ) -> Result<(), Report> {
         let own = &loaded.scene.meshes[index].materials;
-        let slots: Vec<String> = read.mesh.slots.iter().filter(|slot| !own.contains_key(*slot)).cloned().collect();
+        let slots: Vec<String> =
+            read.model.mesh.slots.iter().filter(|slot| !own.contains_key(*slot)).cloned().collect();
         let unnamed = |slot: &&String| !self.named.contains_key(&(path.to_owned(), (*slot).clone()));
         let new: Vec<String> = slots.iter().filter(unnamed).cloned().collect();
         let (known, unknown): (Vec<&String>, Vec<&String>) =
@@ -154,7 +171,7 @@ impl<'a> ModelReader<'a> {
             }
             added.push(name);
         }
-        make_solid(loaded.scene_mut(), &added, &read.mesh);
+        make_solid(loaded.scene_mut(), &added, &read.model.mesh);
         for slot in slots {
             let name = self.named[&(path.to_owned(), slot.clone())].clone();
             loaded.scene_mut().meshes[index].materials.insert(slot, name);
@@ -176,7 +193,7 @@ impl<'a> ModelReader<'a> {
     fn add(&mut self, loaded: &mut Loaded, path: &Path, read: &Read, found: &MtlMaterial, place: &[Step]) -> String {
         let name = self.add_material(loaded.scene_mut(), path, &found.name, found.material(self.rule));
         if let Some(file) = &found.map_kd
-            && let Err(why) = self.add_texture(loaded.scene_mut(), path, &name, file, &read.mesh)
+            && let Err(why) = self.add_texture(loaded.scene_mut(), path, &name, file, &read.model.mesh)
         {
             let message = format!("the texture `{file}` is not drawn: {why}");
             self.warnings.push(loaded.places.put(Report::warning(WarningCode::TextureIgnored, message), place));

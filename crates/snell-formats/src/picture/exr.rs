@@ -77,6 +77,22 @@ fn image<C>(display: IntegerBounds, layer: Layer<C>) -> Image<Layer<C>> {
     Image { attributes: ImageAttributes::new(display), layer_data: layer }
 }
 
+fn recipe(attributes: &LayerAttributes) -> Option<String> {
+    match attributes.other.get(&Text::from(KEYWORD))? {
+        AttributeValue::Text(text) => String::from_utf8(text.as_slice().to_vec()).ok(),
+        _ => None,
+    }
+}
+
+/// The recipe stands before the pixels, whose blocks are looked for and not unpacked.
+#[cfg(feature = "disk")]
+pub(super) fn memory(bytes: &[u8]) -> std::result::Result<super::Memory, String> {
+    let reader = exr::block::read(Cursor::new(bytes), false).map_err(|e| e.to_string())?;
+    let recipe = reader.headers().first().and_then(|header| recipe(&header.own_attributes));
+    let is_whole = reader.all_chunks(false).is_ok_and(|mut chunks| chunks.all(|chunk| chunk.is_ok()));
+    Ok(super::Memory { recipe, is_whole })
+}
+
 pub(super) fn read<P: Clone + 'static, F: Fn(Rgb) -> P + 'static>(
     bytes: &[u8],
     convert: impl FnOnce(Option<u32>) -> F,
@@ -111,9 +127,6 @@ pub(super) fn read<P: Clone + 'static, F: Fn(Rgb) -> P + 'static>(
     if pixels.is_empty() {
         return Err(format!("{} x {} is not a size that is read", size.0, size.1));
     }
-    let recipe = match layer.attributes.other.get(&Text::from(KEYWORD)) {
-        Some(AttributeValue::Text(text)) => String::from_utf8(text.as_slice().to_vec()).ok(),
-        _ => None,
-    };
+    let recipe = recipe(&layer.attributes);
     Ok(Picture { width: size.0, height: size.1, pixels, alpha, max: None, recipe })
 }

@@ -157,7 +157,32 @@ pub fn read(path: &Path) -> Result<Picture, Report> {
     decode(path, &Disk.read(path, MAX_MODEL_BYTES)?, |_| |color| color)
 }
 
-/// The same from the bytes of a file, with pixels that become something smaller as they are read, so that a large picture is in
+/// What a picture remembers, without its pixels.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Memory {
+    /// What is needed to render it again, if the file says so.
+    pub recipe: Option<String>,
+    /// Is the file there to its end? One that was cut off may still tell its recipe.
+    pub is_whole: bool,
+}
+
+/// Reads what a PNG or EXR remembers, in a fraction of the time that its pixels would take.
+///
+/// # Errors
+/// When the file cannot be read, or is no such picture.
+#[cfg(feature = "disk")]
+pub fn memory_of(path: &Path) -> Result<Memory, Report> {
+    use crate::files::{Disk, Files, MAX_MODEL_BYTES};
+    let bytes = Disk.read(path, MAX_MODEL_BYTES)?;
+    let memory = match Format::in_bytes(&bytes) {
+        Some(Format::Png { .. }) => png::memory(&bytes),
+        Some(Format::Exr) => exr::memory(&bytes),
+        _ => Err("it is neither PNG nor EXR".to_owned()),
+    };
+    memory.map_err(|why| Report::error(format!("`{}` cannot be read: {why}", path.display())))
+}
+
+/// [`read`] from the bytes of a file, with pixels that become something smaller as they are read, so that a large picture is in
 /// memory once. Told the largest integer ([`Picture::max`]), `convert` says how.
 ///
 /// # Errors

@@ -46,6 +46,21 @@ pub(super) fn write(
     Ok(writer.finish()?)
 }
 
+/// Snell writes it plain; a compressed one could be of any size.
+fn recipe(info: &png::Info<'_>) -> Option<String> {
+    info.utf8_text.iter().find(|t| t.keyword == KEYWORD && !t.compressed)?.get_text().ok()
+}
+
+/// The recipe stands before the pixels, which are looked through for their checksums only.
+#[cfg(feature = "disk")]
+pub(super) fn memory(bytes: &[u8]) -> Result<super::Memory, String> {
+    let limits = png::Limits { bytes: MAX_PIXELS as usize * 8 };
+    let mut reader =
+        png::Decoder::new_with_limits(Cursor::new(bytes), limits).read_info().map_err(|e| e.to_string())?;
+    let recipe = recipe(reader.info());
+    Ok(super::Memory { recipe, is_whole: reader.finish().is_ok() })
+}
+
 pub(super) fn read<P, F: Fn(Rgb) -> P>(
     bytes: &[u8],
     convert: impl FnOnce(Option<u32>) -> F,
@@ -61,10 +76,7 @@ pub(super) fn read<P, F: Fn(Rgb) -> P>(
     data.resize(size, 0);
     let frame = reader.next_frame(&mut data).map_err(|e| e.to_string())?;
     reader.finish().map_err(|e| e.to_string())?;
-    let info = reader.info();
-    // Snell writes it plain; a compressed one could be of any size.
-    let recipe = info.utf8_text.iter().find(|t| t.keyword == KEYWORD && !t.compressed);
-    let recipe = recipe.and_then(|t| t.get_text().ok());
+    let recipe = recipe(reader.info());
 
     let channels = frame.color_type.samples();
     let sixteen_bit = frame.bit_depth == BitDepth::Sixteen;

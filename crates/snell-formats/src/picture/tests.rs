@@ -119,3 +119,27 @@ proptest! {
         };
     }
 }
+
+#[test]
+fn a_recipe_is_read_without_pixels_and_what_was_cut_off_is_found() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, format) in [("a.png", Format::Png { sixteen_bit: false }), ("a.exr", Format::Exr)] {
+        let path = folder.path().join(name);
+        write(&path, format, &film(false), LINEAR, Some("a recipe, with ü")).unwrap();
+        let memory = memory_of(&path).unwrap();
+        assert!(memory.is_whole && memory.recipe.as_deref() == Some("a recipe, with ü"), "{name}: {memory:?}");
+        let whole = std::fs::read(&path).unwrap();
+        let mut remembered = 0;
+        for length in 0..whole.len() {
+            std::fs::write(&path, &whole[..length]).unwrap();
+            if let Ok(memory) = memory_of(&path) {
+                assert!(!memory.is_whole, "{name}, {length} of {} bytes", whole.len());
+                remembered += usize::from(memory.recipe.is_some());
+            }
+        }
+        assert!(remembered > 0, "{name}");
+    }
+    let path = folder.path().join("a.ppm");
+    write(&path, Format::Ppm { binary: true }, &film(false), LINEAR, None).unwrap();
+    assert!(memory_of(&path).is_err());
+}

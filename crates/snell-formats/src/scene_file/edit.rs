@@ -33,7 +33,7 @@ pub fn keys(change: &str) -> Vec<String> {
 }
 
 /// At the first `=` outside quotes: names may hold one.
-fn split(change: &str) -> Option<(&str, &str)> {
+pub(crate) fn split(change: &str) -> Option<(&str, &str)> {
     let mut quoted = None;
     let equals = change.char_indices().find(|&(_, c)| match quoted {
         None if c == '"' || c == '\'' => {

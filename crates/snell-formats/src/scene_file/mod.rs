@@ -7,6 +7,7 @@ mod locate;
 mod save;
 mod write;
 
+pub(crate) use edit::split;
 pub use edit::{keys, set};
 pub use locate::steps_at;
 #[cfg(feature = "disk")]
@@ -35,12 +36,8 @@ pub enum Syntax {
 pub fn parse(source: &Source, syntax: Syntax) -> Result<Scene, Report> {
     match syntax {
         Syntax::Toml => {
-            let needed = TOML_MEMORY * source.text.len() as u64;
-            if needed > 1 << 30 {
-                let help = "write what is large as a model, and name its file in a [[mesh]]";
-                memory::check("a TOML file of this size", needed)
-                    .map_err(|report| report.help(help).at(source, 0..0))?;
-            }
+            let help = "write what is large as a model, and name its file in a [[mesh]]";
+            enough_memory(source).map_err(|report| report.help(help))?;
             toml_edit::de::from_str(&source.text).map_err(|e| {
                 let range = e.span().unwrap_or(0..0);
                 explain(e.message(), &source.text[range.clone()]).at(source, range)
@@ -60,6 +57,15 @@ pub fn parse(source: &Source, syntax: Syntax) -> Result<Scene, Report> {
 
 /// Times the size of a TOML text that reading it takes: 57 to 61 for meshes and spheres written out, 115 for instances.
 const TOML_MEMORY: u64 = 128;
+
+/// Refuses a TOML text that there is no memory to read.
+pub(crate) fn enough_memory(source: &Source) -> Result<(), Report> {
+    let needed = TOML_MEMORY * source.text.len() as u64;
+    if needed <= 1 << 30 {
+        return Ok(());
+    }
+    memory::check("a TOML file of this size", needed).map_err(|report| report.at(source, 0..0))
+}
 
 /// Says what serde says in our words, with the nearest known key.
 fn explain(message: &str, read: &str) -> Report {
