@@ -97,10 +97,12 @@ class Engine:
         self._watch = watch or (lambda: None)
         self._work = work
         self._run = uuid.uuid4().hex[:8]
-        self._tasks = 0
+        #: How many tasks have been handed out.
+        self.tasks = 0
         #: What happens when something has come back, by its key; the futures are held until then.
         self._waiting: dict[str, tuple[Job, Future, Callable[[Future], object]]] = {}
         self._arrivals: Any = None
+        self._running: list[Job] = []
         #: Seconds for a sample of one pixel, as the pictures before were.
         self._known: float | None = None
 
@@ -115,7 +117,7 @@ class Engine:
         from distributed import as_completed  # noqa: PLC0415 # it is there, as there is a client
 
         self._arrivals = as_completed()
-        queue, running = iter(jobs), list[Job]()
+        queue, running = iter(jobs), self._running
         is_empty = False
         while True:
             threads = sum(self.client.nthreads().values())
@@ -132,6 +134,7 @@ class Engine:
             for job in is_done:
                 running.remove(job)
                 self._learn(job)
+                _let_go(job)
                 yield job
 
     def so_far(self, job: Job) -> list[NativePart]:
@@ -144,6 +147,9 @@ class Engine:
         """Give up what is under way. Tasks that run already come to their end, which nobody waits for."""
         self.client.cancel([future for _, future, _ in self._waiting.values()])
         self._waiting.clear()
+        self._arrivals.clear()
+        for job in self._running:
+            _let_go(job)
 
     def _start(self, job: Job, count: int) -> None:
         """Hand out the first tasks of a picture."""
@@ -200,9 +206,10 @@ class Engine:
         """Hand out all that is left of a band, and how it is joined: pass by pass, in trees."""
         assert band.seconds is not None, "it has been measured"
         there = list(band.parts)
-        for number, samples in enumerate(plan.passes((band.asked, band.spp))):
+        of_task = self._wanted / max(band.seconds, 1e-12)
+        for number, samples in enumerate(plan.passes((band.asked, band.spp), of_task / 2)):
             leaves = []
-            for chunk in plan.chunks(samples, self._wanted / max(band.seconds, 1e-12)):
+            for chunk in plan.chunks(samples, of_task):
                 part, cost = self._render(job, band.rows, chunk, -number)
                 leaves.append(part)
                 self._wait(job, cost, partial(self._count, job, band.rows, chunk))
@@ -212,7 +219,7 @@ class Engine:
                 ]
             there = [self._join([*there, *leaves], -number)]
             if samples[1] < band.spp:
-                self._wait(job, there[0], lambda future: band.parts.__setitem__(slice(None), [future]))
+                self._wait(job, there[0], partial(_take_over, band))
         band.asked = band.spp
         self._collect(job, band, there[0])
 
@@ -234,8 +241,8 @@ class Engine:
         return parts[0] if len(parts) == 1 else self._submit("join", self._work.join, list(parts), priority=priority)
 
     def _submit(self, what: str, function: Callable[..., Any], *arguments: Any, priority: int = 0) -> Future:
-        self._tasks += 1
-        key = f"snell-{what}-{self._run}-{self._tasks}"
+        self.tasks += 1
+        key = f"snell-{what}-{self._run}-{self.tasks}"
         return self.client.submit(function, *arguments, key=key, priority=priority)
 
     def _wait(self, job: Job, future: Future, arrived: Callable[[Future], object]) -> None:
@@ -252,15 +259,30 @@ class Engine:
 
     def _take(self, future: Future) -> None:
         """Do what is to be done with what has come back."""
-        job, _, arrived = self._waiting.pop(future.key)
+        if future.status in ("lost", "pending"):
+            # It was on a worker that is no more: it is done again.
+            self._arrivals.add(future)
+            return
         if future.status == "error":
             raise _failed(future.exception())
         if future.status != "finished":
             message = f"the cluster has let go of a task: it is {future.status}"
             raise RenderError([(None, message, "was it restarted, or cancelled by somebody else?")])
+        job, _, arrived = self._waiting.pop(future.key)
         arrived(future)
         job.open -= 1
         self._watch()
+
+
+def _let_go(job: Job) -> None:
+    """Let the cluster forget what it made for a picture, now and not when somebody collects garbage."""
+    job.scene = None
+    job.bands.clear()
+
+
+def _take_over(band: Band, joined: Future) -> None:
+    """Let what a pass has come to stand for all before it."""
+    band.parts = [joined]
 
 
 def _checked(client: object) -> Client:

@@ -30,12 +30,16 @@ def chunks(samples: Range, most: float) -> list[Range]:
     return list(pairwise(edges))
 
 
-def passes(samples: Range) -> list[Range]:
-    """Cut samples at the powers of two: after each pass there are twice as many as before, which is worth a look."""
+def passes(samples: Range, least: float) -> list[Range]:
+    """Cut samples at powers of two: after each pass there are twice as many as before, which is worth a look.
+
+    Only the last pass may have less than `least` samples.
+    """
     first, end = samples
     edges = [first]
     while edges[-1] < end:
-        edges.append(min(end, 2 ** edges[-1].bit_length()))
+        enough = math.ceil(min(edges[-1] + max(least, 1), end))
+        edges.append(min(end, 2 ** (max(enough, 2 * edges[-1]) - 1).bit_length()))
     return list(pairwise(edges))
 
 
