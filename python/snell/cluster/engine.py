@@ -22,8 +22,10 @@ from .plan import Band, Range
 if TYPE_CHECKING:
     from distributed import Client, Future
 
-#: So many tasks should be ready for each thread.
-_AHEAD = 4
+#: So many answers should be waited for, for each thread.
+_AHEAD = 2
+#: So many bands more than threads make up for those that are quick.
+_SPARE = 16
 
 
 class Cluster:
@@ -100,7 +102,7 @@ class Engine:
         #: How many tasks have been handed out.
         self.tasks = 0
         #: What happens when something has come back, by its key; the futures are held until then.
-        self._waiting: dict[str, tuple[Job, Future, Callable[[Future], object]]] = {}
+        self._waiting: dict[str, tuple[Job, Future, list[Callable[[Future], object]]]] = {}
         self._arrivals: Any = None
         self._running: list[Job] = []
         #: Seconds for a sample of one pixel, as the pictures before were.
@@ -126,7 +128,8 @@ class Engine:
                 is_empty = job is None
                 if job is not None:
                     running.append(job)
-                    self._start(job, math.ceil(_AHEAD * max(threads, 1) / count))
+                    bands = min(2 * threads, threads + _SPARE)
+                    self._start(job, math.ceil(max(bands, 1) / count))
             if not running:
                 return
             while not (is_done := [job for job in running if not job.open]):
@@ -181,10 +184,14 @@ class Engine:
     def _try(self, job: Job, band: Band) -> None:
         """Render some samples to see how long they take."""
         samples = band.trial(self._wanted)
-        part, cost = self._render(job, band.rows, samples, 0)
+        part = self._render(job, band.rows, samples, 0)
+        cost = self._submit("cost", self._work.cost, part)
 
         def arrived(future: Future) -> None:
-            seconds, _ = self._count(job, band.rows, samples, future)
+            seconds, rays = future.result()
+            _count(job, band.rows, samples)
+            job.rays += rays
+            band.rays += rays
             band.parts.append(part)
             band.asked = samples[1]
             band.measured(samples, seconds, self._wanted)
@@ -210,9 +217,9 @@ class Engine:
         for number, samples in enumerate(plan.passes((band.asked, band.spp), of_task / 2)):
             leaves = []
             for chunk in plan.chunks(samples, of_task):
-                part, cost = self._render(job, band.rows, chunk, -number)
+                part = self._render(job, band.rows, chunk, -number)
                 leaves.append(part)
-                self._wait(job, cost, partial(self._count, job, band.rows, chunk))
+                self._wait(job, part, partial(_count, job, band.rows, chunk))
             while len(leaves) > plan.FAN_IN:
                 leaves = [
                     self._join(leaves[at : at + plan.FAN_IN], -number) for at in range(0, len(leaves), plan.FAN_IN)
@@ -227,15 +234,15 @@ class Engine:
         """Fetch a band when it is done."""
 
         def arrived(future: Future) -> None:
-            job.parts.append(future.result())
+            back = future.result()
+            job.parts.append(back)
+            job.rays += back.rays - band.rays
             band.parts = []
 
         self._wait(job, part, arrived)
 
-    def _render(self, job: Job, rows: Range, samples: Range, priority: int) -> tuple[Future, Future]:
-        """Return a part, and what it costs."""
-        part = self._submit("render", self._work.render, job.scene, job.crop, rows, samples, priority=priority)
-        return part, self._submit("cost", self._work.cost, part, priority=priority)
+    def _render(self, job: Job, rows: Range, samples: Range, priority: int) -> Future:
+        return self._submit("render", self._work.render, job.scene, job.crop, rows, samples, priority=priority)
 
     def _join(self, parts: Sequence[Any], priority: int) -> Future:
         return parts[0] if len(parts) == 1 else self._submit("join", self._work.join, list(parts), priority=priority)
@@ -247,15 +254,10 @@ class Engine:
 
     def _wait(self, job: Job, future: Future, arrived: Callable[[Future], object]) -> None:
         job.open += 1
-        self._waiting[future.key] = job, future, arrived
-        self._arrivals.add(future)
-
-    def _count(self, job: Job, rows: Range, samples: Range, future: Future) -> tuple[float, int]:
-        """Count what has been rendered."""
-        seconds, rays = future.result()
-        job.samples_done += (rows[1] - rows[0]) * job.region[2] * (samples[1] - samples[0])
-        job.rays += rays
-        return seconds, rays
+        if future.key not in self._waiting:
+            self._waiting[future.key] = job, future, []
+            self._arrivals.add(future)
+        self._waiting[future.key][2].append(arrived)
 
     def _take(self, future: Future) -> None:
         """Do what is to be done with what has come back."""
@@ -269,9 +271,15 @@ class Engine:
             message = f"the cluster has let go of a task: it is {future.status}"
             raise RenderError([(None, message, "was it restarted, or cancelled by somebody else?")])
         job, _, arrived = self._waiting.pop(future.key)
-        arrived(future)
-        job.open -= 1
+        for each in arrived:
+            each(future)
+            job.open -= 1
         self._watch()
+
+
+def _count(job: Job, rows: Range, samples: Range, _: object = None) -> None:
+    """Count what has been rendered."""
+    job.samples_done += (rows[1] - rows[0]) * job.region[2] * (samples[1] - samples[0])
 
 
 def _let_go(job: Job) -> None:

@@ -22,10 +22,10 @@ def bands(first: int, end: int, count: int) -> list[Range]:
     return list(pairwise(edges))
 
 
-def chunks(samples: Range, most: float) -> list[Range]:
-    """Cut samples at the multiples of a power of two, which is at most so many: each chunk but the last is one sum."""
+def chunks(samples: Range, count: float) -> list[Range]:
+    """Cut samples at the multiples of a power of two, of about so many: each chunk but the last is one sum."""
     first, end = samples
-    size = 2 ** int(math.log2(max(1.0, min(most, 2.0**16))))
+    size = 2 ** round(math.log2(max(1.0, min(count, 2.0**16))))
     edges = [first, *range((first // size + 1) * size, end, size), end]
     return list(pairwise(edges))
 
@@ -55,6 +55,8 @@ class Band:
     seconds: float | None = None
     #: Is that measured for long enough to go by it?
     is_sure: bool = False
+    #: Rays of its trials.
+    rays: int = 0
     #: What is joined with what it gets next.
     parts: list[Any] = field(default_factory=list)
 
@@ -83,4 +85,6 @@ class Band:
         if len(rows) == 1:
             return [self]
         height = self.rows[1] - self.rows[0]
-        return [Band(each, self.spp, self.asked, self.seconds * (each[1] - each[0]) / height, True) for each in rows]
+        return [
+            Band(each, self.spp, self.asked, self.seconds * (each[1] - each[0]) / height, is_sure=True) for each in rows
+        ]
