@@ -16,8 +16,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import dask
-import snell
 from distributed import Client, LocalCluster, as_completed
+
+import snell
 from snell.cluster.engine import Cluster, Engine, Job
 
 #: Bands of rows for each thread, and tasks that each takes besides: two trials, what they cost, a join for each pass.
@@ -68,12 +69,15 @@ class Prediction:
 
 
 def predict(
-    pixels: float, spp: int, threads: int, known: Constants, network: float, task_seconds: float | None = None
+    samples: tuple[float, int], threads: int, known: Constants, network: float, task_seconds: float | None = None
 ) -> Prediction:
-    """Return what a picture takes on so many threads; `network` is in bytes a second, into the client.
+    """Return what a picture of so many pixels and samples takes on so many threads.
+
+    `network` is in bytes a second, into the client.
 
     A task should take so long that the scheduler is busy for at most a third of the time, and at least four seconds.
     """
+    pixels, spp = samples
     work = pixels * spp * known.sample
     task_seconds = task_seconds or max(4.0, 3 * threads * TASKS_OF_ONE * known.task)
     bands = BANDS * threads
@@ -125,7 +129,7 @@ def table(known: Constants, network: float, size: int = 8192, spp: int = 4096) -
         "| ---: | ---: | ---: | ---: | ---: | ---: | ---: | --- |",
     ]
     for threads in (10, 100, 1000, 10_000):
-        said = predict(size * size, spp, threads, known, network)
+        said = predict((size * size, spp), threads, known, network)
         times = (said.rendering, said.scheduling, said.collecting, said.seconds)
         shown = " | ".join(_time(seconds) for seconds in times)
         lines.append(f"| {threads} | {said.task_seconds:.0f} | {said.tasks:.3g} | {shown} | {said.limit} |")
@@ -194,8 +198,8 @@ def simulate(workers: int, task_seconds: float = 2.0, seconds: float = 20.0) -> 
         started = time.perf_counter()
         (done,) = engine.finished([job])
         taken = time.perf_counter() - started
-        assert sum(part.samples for part in done.parts) == size * spp  # type: ignore[misc]
-    return taken, predict(size * size, spp, workers, known, math.inf, task_seconds)
+        assert sum(part.samples for part in done.parts) == size * spp
+    return taken, predict((size * size, spp), workers, known, math.inf, task_seconds)
 
 
 def overhead(rounds: int) -> None:
@@ -223,9 +227,7 @@ def overhead(rounds: int) -> None:
 def main() -> None:
     """Do what is asked for."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument(
-        "--simulate", metavar="WORKERS", type=int, help="check the model with so many workers that wait"
-    )
+    parser.add_argument("--simulate", metavar="WORKERS", type=int, help="check the model with workers that wait")
     parser.add_argument("--overhead", metavar="ROUNDS", type=int, help="compare a cluster with threads, so many times")
     parser.add_argument("--scene", default="gallery/ball", help="what is rendered")
     parser.add_argument("--network", metavar="GBIT/S", type=float, default=1.0, help="of the client; by default 1")
@@ -233,8 +235,8 @@ def main() -> None:
     if asked.simulate:
         taken, said = simulate(asked.simulate)
         print(
-            f"{asked.simulate} workers: {taken:.1f} s, predicted {said.seconds:.1f} s: rendering {said.rendering:.1f} s, "
-            f"scheduling {said.scheduling:.1f} s, {said.tasks:.0f} tasks"
+            f"{asked.simulate} workers: {taken:.1f} s, predicted {said.seconds:.1f} s: start {said.beginning:.1f} s, "
+            f"rendering {said.rendering:.1f} s, scheduling {said.scheduling:.1f} s, {said.tasks:.0f} tasks"
         )
     if asked.overhead:
         overhead(asked.overhead)
@@ -245,9 +247,10 @@ def main() -> None:
         ):
             known = measured(client, snell.scenes[asked.scene])
         print(
-            f"{asked.scene}: {known.sample * 1e9:.0f} ns for a sample on one thread; a task of Dask {known.task * 1e3:.2f} ms; "
-            f"parts of {BYTES} bytes a pixel are joined at {known.join / 1e6:.0f} MB/s, sent and read at "
-            f"{known.pickle / 1e6:.0f} MB/s\n\n8192 x 8192 pixels with 4096 samples, {asked.network:g} Gbit/s:\n"
+            f"{asked.scene}: {known.sample * 1e9:.0f} ns for a sample on one thread; a task of Dask "
+            f"{known.task * 1e3:.2f} ms; parts of {BYTES} bytes a pixel are joined at {known.join / 1e6:.0f} MB/s, "
+            f"pickled and read at {known.pickle / 1e6:.0f} MB/s\n\n"
+            f"8192 x 8192 pixels with 4096 samples, {asked.network:g} Gbit/s:\n"
         )
         print(table(known, asked.network * 1e9 / 8))
 

@@ -101,6 +101,13 @@ def rate(pixels: int, total: int, rays: int, seconds: float) -> str:
     return f"{100 * pixels / total:3.0f} %  {rays / seconds / 1e6:.1f} M rays/s"
 
 
+def duration(seconds: float) -> str:
+    """Say a time in words."""
+    minutes, seconds = divmod(round(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours} h {minutes:02} min" if hours else f"{minutes} min {seconds:02} s" if minutes else f"{seconds} s"
+
+
 @contextmanager
 def watcher(progress: bool | Watch, name: str, note: Note = rate) -> Iterator[Watch | None]:
     """Give what a render calls while it lasts."""

@@ -346,7 +346,7 @@ class Scene(Value):
             0 to 4096; 0, the default, for as many as the machine has. It changes no bit of the picture.
         progress : bool or callable
             By default a bar, on a terminal and in notebooks, for what takes longer; False for none; or what is called
-            with pixels done, pixels in all, and rays.
+            with pixels done, pixels in all, and rays (with a `client` those that have come back).
         client : distributed.Client, optional
             Render on the workers of this Dask cluster, to the same bits: each runs as many tasks as it has threads.
             Notebooks show what has come back. It needs ``pip install "snell[cluster]"``.

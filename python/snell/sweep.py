@@ -18,7 +18,7 @@ from .how import How
 from .movie import png
 from .movie.frames import Sweep
 from .picture import Picture
-from .progress import Note, Watch, watcher
+from .progress import Note, Watch, duration, watcher
 from .scene import Scene, pictured, warn_of
 from .values import plain
 
@@ -201,16 +201,10 @@ def _note(count: int, before: int) -> Note:
     def note(pixels: int, total: int, rays: int, seconds: float) -> str:
         del rays
         fresh = pixels * count / total - before
-        left = f"  {_duration(seconds / fresh * (count - before - fresh))} left" if fresh > 0 else ""
+        left = f"  {duration(seconds / fresh * (count - before - fresh))} left" if fresh > 0 else ""
         return f"frame {min(count, pixels * count // total + 1)} of {count}{left}"
 
     return note
-
-
-def _duration(seconds: float) -> str:
-    minutes, seconds = divmod(round(seconds), 60)
-    hours, minutes = divmod(minutes, 60)
-    return f"{hours} h {minutes:02} min" if hours else f"{minutes} min {seconds:02} s" if minutes else f"{seconds} s"
 
 
 def _read(path: Path) -> dict[str, str]:

@@ -310,6 +310,6 @@ def test_a_plan_for_many_workers_is_what_they_take() -> None:
     # Half as long again and a second: this machine may be busy.
     assert said.rendering <= taken < 1.5 * said.seconds + 1, f"{taken:.1f} s, predicted {said}"
     known = bench.Constants(1e-6, 1e-3, 3e8, 3e8)
-    times = [bench.predict(8192**2, 4096, threads, known, 1e8) for threads in (10, 100, 1000, 10_000)]
+    times = [bench.predict((8192**2, 4096), threads, known, 1e8) for threads in (10, 100, 1000, 10_000)]
     assert times[0].limit == "rays" and times[0].seconds > 5 * times[1].seconds > 25 * times[2].seconds
     assert times[3].scheduling < times[3].tasks * 1e-3 * 1.01

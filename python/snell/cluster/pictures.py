@@ -13,7 +13,7 @@ from typing import Any
 from .. import _native
 from ..how import Region
 from ..notebook.still import in_notebook
-from ..progress import Watch, rate, watcher
+from ..progress import Watch, duration, watcher
 from .engine import Cluster, Engine, Job
 
 #: Between two looks at the picture so far, in seconds; and so many times longer than a look takes.
@@ -31,8 +31,10 @@ def render(
     started, job = time.monotonic(), Job(world, crop)
 
     def note(pixels: int, total: int, rays: int, seconds: float) -> str:
+        del rays  # most are still with the workers
         workers = len(cluster.client.nthreads())
-        return f"{rate(pixels, total, rays, seconds)}  {workers} worker{'s' if workers != 1 else ''}"
+        left = f"{duration(seconds * (total - pixels) / pixels)} left  " if pixels else ""
+        return f"{100 * pixels / total:3.0f} %  {left}{workers} worker{'s' if workers != 1 else ''}"
 
     def made(parts: list[_native.NativePart], unfinished: bool) -> _native.NativePicture:
         return world.merge(crop, parts, unfinished, time.monotonic() - started)

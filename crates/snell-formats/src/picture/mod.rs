@@ -77,7 +77,7 @@ impl Format {
     }
 }
 
-/// Writes a film. Unfinished pixels are transparent in PNG and EXR, NaN in NPY, black in PPM.
+/// Writes a film. Unfinished pixels are transparent in EXR, and in PNG where they are black; NaN in NPY; as they are in PPM.
 ///
 /// `recipe` is kept in PNG and EXR: what is needed to render the picture again.
 ///

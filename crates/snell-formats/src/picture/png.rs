@@ -31,7 +31,9 @@ pub(super) fn write(
     for (pixels, finished_pixels) in film.pixels.chunks_exact(width).zip(film.finished.chunks_exact(width)) {
         row.clear();
         for (pixel, &done) in pixels.iter().zip(finished_pixels) {
-            let alpha = (!finished).then_some(if done { max } else { 0 });
+            // Of a pixel that has a colour some samples are there, which is worth to be seen.
+            let is_seen = done || *pixel != Rgb::black();
+            let alpha = (!finished).then_some(if is_seen { max } else { 0 });
             for value in pixel.to_array().map(|c| encoding.encode(c, max)).into_iter().chain(alpha) {
                 if sixteen_bit {
                     row.extend(value.to_be_bytes());
