@@ -167,8 +167,8 @@ pub struct RenderArgs {
     #[command(flatten)]
     pub reading: ReadingArgs,
 
-    /// Threads; 0: as many as SNELL_THREADS says, else OMP_NUM_THREADS, else SLURM_CPUS_PER_TASK, else one for each core that this
-    /// process may use (affinity, quotas of its groups)
+    /// Threads; 0: as many as `SNELL_THREADS` says, else `OMP_NUM_THREADS`, else `SLURM_CPUS_PER_TASK`, else one for each core that
+    /// this process may use (affinity, quotas of its groups)
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024), help_heading = "Work")]
     pub threads: u16,
     /// Give way to other programs: niceness 10, or N, from 0 to 19

@@ -242,7 +242,9 @@ fn read(name: &str, args: &RenderArgs) -> Result<(Recipe, Loaded), Failure> {
     }
     if let Some(from) = &args.from {
         let (recipe, loaded, notes) = of_picture(from, &args.reading.search, &changes)?;
-        notes.into_iter().for_each(|message| note(args, message));
+        for message in notes {
+            note(args, message);
+        }
         return Ok((recipe, loaded));
     }
     of_scene(name, &args.reading, &changes)
