@@ -14,7 +14,7 @@ cargo build --locked --release --features run --manifest-path fuzz/Cargo.toml --
 printf '\n── fuzzing the command\n'
 RUSTFLAGS='' cargo build --locked --quiet --package snell-cli --profile ci
 python3 scripts/fuzz_command.py target/ci/snell "${SECONDS_EACH:-60}"
-for target in scene driver obj ply stl nff picture; do
+for target in scene driver obj ply stl nff picture part; do
     printf '\n── fuzzing %s\n' "$target"
     mkdir -p "fuzz/corpus/$target"
     seeds=("fuzz/seeds/$target")

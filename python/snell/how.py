@@ -115,7 +115,7 @@ def range_of(value: object, place: str) -> tuple[int, int] | None:
 
 
 def threads(how: Mapping[str, Any]) -> int:
-    """Return the number of threads; 0 for as many as the machine has."""
+    """Return the number of threads; 0 for those by default."""
     number = how.get("threads", 0)
     if not (_is_whole(number) and 0 <= number <= _MOST_THREADS):
         raise SceneError([("threads", f"expected 0 to {_MOST_THREADS}, read {number!r}", None)])

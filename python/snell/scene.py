@@ -343,7 +343,8 @@ class Scene(Value):
         shadows : {"off", "opaque", "tinted"}, optional
             What stands between a surface and a light.
         threads : int
-            0 to 4096; 0, the default, for as many as the machine has. It changes no bit of the picture.
+            0 to 4096; 0, the default, for as many as SNELL_THREADS, OMP_NUM_THREADS or SLURM_CPUS_PER_TASK says, or the
+            machine has. It changes no bit of the picture.
         progress : bool or callable
             By default a bar, on a terminal and in notebooks, for what takes longer; False for none; or what is called
             with pixels done, pixels in all, and rays (with a `client` those that have come back).

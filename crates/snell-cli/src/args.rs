@@ -167,9 +167,13 @@ pub struct RenderArgs {
     #[command(flatten)]
     pub reading: ReadingArgs,
 
-    /// Threads; 0: one for each core
+    /// Threads; 0: as many as `SNELL_THREADS` says, else `OMP_NUM_THREADS`, else `SLURM_CPUS_PER_TASK`, else one for each core that
+    /// this process may use (affinity, quotas of its groups)
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024), help_heading = "Work")]
     pub threads: u16,
+    /// Give way to other programs: niceness 10, or N, from 0 to 19
+    #[arg(long, value_name = "N", num_args = 0..=1, require_equals = true, default_missing_value = "10", value_parser = clap::value_parser!(u8).range(0..=19), help_heading = "Work")]
+    pub nice: Option<u8>,
     /// Edge of a tile in pixels; the picture does not depend on it
     #[arg(long, value_name = "N", default_value_t = TILE, value_parser = clap::value_parser!(u32).range(1..=4096), help_heading = "Work")]
     pub tile: u32,
@@ -286,16 +290,17 @@ pub enum ProgressKind {
     Json,
 }
 
-/// Say what is in a scene, a driver, or a picture made by Snell
+/// Say what is in a scene, a driver, or a picture or part made by Snell
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
   snell info lecture/default
   snell info driver00.txt
   snell info glass.png           how it was made
+  snell info part.npz            of which picture, and which samples of it
   snell info glass.png --scene   the text of its scene")]
 pub struct InfoArgs {
-    /// Scene file, driver file, built-in name, or picture; - is standard input
+    /// Scene file, driver file, built-in name, picture, or part; - is standard input
     #[arg(value_parser = SceneName, hide_possible_values = true)]
     pub file: String,
     /// Print the text of the scene, as it is in the file, and nothing else
@@ -350,7 +355,8 @@ Examples:
   snell merge a.npz b.npz -o picture.png
   snell merge part-1*.npz -o part-1.npz       some of many, into one part")]
 pub struct MergeArgs {
-    /// Parts (`snell render --part`, or checkpoints) of one picture, of which no sample is there twice
+    /// Parts (`snell render --part`, or checkpoints) of one picture, of which no sample is there twice; of different --spp, above
+    /// 1, they join to a picture of the largest
     #[arg(required = true, value_name = "PART")]
     pub parts: Vec<PathBuf>,
     /// The picture (.png .ppm .exr .npy), which all parts together must cover; or a part (.npz)

@@ -12,6 +12,7 @@ use snell::world::World;
 use snell_formats::files::{Disk, Files, MAX_SCENE_BYTES};
 use snell_formats::given::Given;
 use snell_formats::load::Loaded;
+use snell_formats::part::{self, Header, PartFile};
 use snell_formats::picture::{self, Picture};
 use snell_formats::recipe::Recipe;
 use snell_formats::text::decode;
@@ -24,6 +25,9 @@ pub fn run(args: &InfoArgs) -> Outcome {
     let given = what_is(&args.file);
     if let Given::Picture(_) = given {
         return about_picture(&picture::read(Path::new(&args.file)).or_fail(FAILED)?, args);
+    }
+    if given == Given::Part {
+        return about_part(PartFile::open(Path::new(&args.file)).or_fail(FAILED)?.header(), args);
     }
     if let Some(report) = given.not_read(&args.file) {
         return Err(Failure::new(SCENE, report));
@@ -66,6 +70,37 @@ fn about_picture(picture: &Picture, args: &InfoArgs) -> Outcome {
     if args.scene {
         return print_text(&recipe.text);
     }
+    text.push_str(&about_recipe(&recipe));
+    let film = recipe.film_sha256.unwrap_or_else(|| "not finished".to_owned());
+    let _ = writeln!(text, "film         {film}");
+    let _ = writeln!(text, "again        snell render --from {}", args.file);
+    say::print(&plain(&text))
+}
+
+/// Of which picture it is, and what of it is there.
+fn about_part(header: &Header, args: &InfoArgs) -> Outcome {
+    let Header { recipe, size: [width, height], crop, spp, pieces, statistics, .. } = header;
+    if args.scene {
+        return print_text(&recipe.text);
+    }
+    let mut text = format!("{}: a part of a picture of {width} x {height} pixels, {spp} samples each\n", args.file);
+    text.push_str(&about_recipe(recipe));
+    for piece in pieces.iter().take(SHOWN) {
+        let _ = writeln!(text, "has          {}", part::words(piece.rect, &piece.samples));
+    }
+    if pieces.len() > SHOWN {
+        let _ = writeln!(text, "             … and {} more rectangles", pieces.len() - SHOWN);
+    }
+    let of = if (crop.width, crop.height) == (*width, *height) { "picture" } else { "crop" };
+    let _ = writeln!(text, "share        {} % of all samples of the {of}", six_digits(100.0 * header.share()));
+    let _ = writeln!(text, "rays         {}", statistics.rays.total());
+    let _ = writeln!(text, "go on        snell render --resume {}", args.file);
+    say::print(&plain(&text))
+}
+
+/// What a picture, or a part of one, is made of.
+fn about_recipe(recipe: &Recipe) -> String {
+    let mut text = String::new();
     let _ = writeln!(text, "made by      Snell {}", recipe.snell);
     let _ = writeln!(text, "scene        {} (its text: --scene)", recipe.name);
     for change in &recipe.set {
@@ -80,13 +115,10 @@ fn about_picture(picture: &Picture, args: &InfoArgs) -> Outcome {
     for model in &recipe.models {
         let _ = writeln!(text, "model        {}", model.path.display());
     }
-    let film = recipe.film_sha256.unwrap_or_else(|| "not finished".to_owned());
-    let _ = writeln!(text, "film         {film}");
-    let _ = writeln!(text, "again        snell render --from {}", args.file);
-    say::print(&plain(&text))
+    text
 }
 
-/// More shapes of a kind than this are counted, not listed.
+/// More shapes of a kind, or rectangles, than this are counted, not listed.
 const SHOWN: usize = 20;
 
 fn about_scene(loaded: &Loaded, world: &World) -> String {

@@ -96,10 +96,21 @@ pub fn render(
         let is_late = last.is_some_and(|last| Instant::now() >= last);
         if let Some(file) = file {
             let at = Instant::now();
-            match keep(file, recipe, size, &film) {
-                Ok(()) => written += 1,
+            let header = Header::new(recipe, size, film.pieces(), film.statistics());
+            match keep(file, &header, &film) {
+                Ok(()) => {
+                    written += 1;
+                    if args.progress == ProgressKind::Json {
+                        let writing = (writing + at.elapsed()).as_secs_f64();
+                        let mut event = of_kept("kept", file, &header);
+                        event["times"] = written.into();
+                        event["writing_seconds"] = writing.into();
+                        event["seconds"] = started.elapsed().as_secs_f64().into();
+                        tell(&event.to_string());
+                    }
+                }
                 Err(report) if is_cancelled || is_late || is_done && args.part.is_some() => {
-                    return Err(Failure::new(FAILED, rescue(report, file, recipe, size, &film)));
+                    return Err(Failure::new(FAILED, rescue(report, file, &header, &film)));
                 }
                 Err(report) => not_kept(&report, args),
             }
@@ -109,20 +120,15 @@ pub fn render(
             break;
         }
         if is_cancelled || is_late {
-            stopped(&film, settings, file, args);
+            if let Some(file) = file {
+                stopped(file, &Header::new(recipe, size, film.pieces(), film.statistics()), args);
+            }
             return Err(Failure { code: INTERRUPTED, reports: Vec::new() });
         }
     }
-    let seconds = started.elapsed().as_secs_f64();
-    if args.progress == ProgressKind::Json {
-        let writing = writing.as_secs_f64();
-        let event =
-            json!({ "event": "kept", "file": file, "times": written, "writing_seconds": writing, "seconds": seconds });
-        tell(&event.to_string());
-    }
     if let Some(file) = &args.part {
         if !args.quiet && args.progress == ProgressKind::Auto {
-            let rays = film.statistics().rays.total();
+            let (rays, seconds) = (film.statistics().rays.total(), started.elapsed().as_secs_f64());
             tell(&format!("{}: samples {first} to {}, {rays} rays in {seconds:.2} s", file.display(), end - 1));
         }
         return Ok(None);
@@ -172,9 +178,18 @@ fn begun(size: [u32; 2], recipe: &Recipe, args: &RenderArgs) -> Result<PartialFi
     Ok(film)
 }
 
-fn keep(file: &Path, recipe: &Recipe, size: [u32; 2], film: &PartialFilm) -> Result<(), Report> {
-    let header = Header::new(recipe, size, film.pieces(), film.statistics());
-    disk::write(file, |out| part::write(out, &header, film))
+fn keep(file: &Path, header: &Header, film: &PartialFilm) -> Result<(), Report> {
+    disk::write(file, |out| part::write(out, header, film))
+}
+
+/// So many pieces are listed in an event.
+const LISTED: usize = 100;
+
+/// What a file that is kept has, for a farm that shows it.
+fn of_kept(event: &str, file: &Path, header: &Header) -> serde_json::Value {
+    let pieces = &header.pieces[..header.pieces.len().min(LISTED)];
+    let more = header.pieces.len() - pieces.len();
+    json!({ "event": event, "file": file, "share": header.share(), "pieces": pieces, "more_pieces": more })
 }
 
 /// Says that the disk is full, or what else it is.
@@ -187,29 +202,21 @@ fn not_kept(report: &Report, args: &RenderArgs) {
 }
 
 /// Keeps elsewhere what cannot be kept where it should be, if possible, so that no work is lost.
-fn rescue(report: Report, file: &Path, recipe: &Recipe, size: [u32; 2], film: &PartialFilm) -> Report {
+fn rescue(report: Report, file: &Path, header: &Header, film: &PartialFilm) -> Report {
     let name = file.file_stem().unwrap_or_default().to_string_lossy();
     let elsewhere = std::env::temp_dir().join(format!("snell-{}-{name}.npz", std::process::id()));
-    match keep(&elsewhere, recipe, size, film) {
+    match keep(&elsewhere, header, film) {
         Ok(()) => report.help(format!("what is done is kept as {}", elsewhere.display())),
         Err(_) => report,
     }
 }
 
 /// Says how far it has come, and how it goes on.
-fn stopped(film: &PartialFilm, settings: &Settings, file: Option<&Path>, args: &RenderArgs) {
-    let crop = film.crop();
-    let all = u64::from(crop.width) * u64::from(crop.height) * u64::from(settings.spp);
-    let of_piece = |piece: &snell::render::Piece| {
-        piece.pixel_count() * piece.samples.iter().map(|[first, end]| u64::from(end - first)).sum::<u64>()
-    };
-    let done: u64 = film.pieces().iter().map(of_piece).sum();
-    let share = done as f64 / all.max(1) as f64;
+fn stopped(file: &Path, header: &Header, args: &RenderArgs) {
     if args.progress == ProgressKind::Json {
-        tell(&json!({ "event": "interrupted", "file": file, "share": share }).to_string());
-    } else if let Some(file) = file.filter(|_| !args.quiet) {
-        let percent = 100.0 * share;
-        let shown = file.display();
+        tell(&of_kept("interrupted", file, header).to_string());
+    } else if !args.quiet {
+        let (percent, shown) = (100.0 * header.share(), file.display());
         tell(&format!(
             "stopped: {percent:.1} % of the samples are kept in {shown}; go on with: snell render --resume {shown}"
         ));

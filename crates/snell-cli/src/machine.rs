@@ -1,4 +1,4 @@
-//! Which machine this is, and which processes live on it.
+//! Which machine this is, which processes live on it, and how this one behaves there.
 
 #![allow(unsafe_code, reason = "the system is asked through libc only")]
 
@@ -59,6 +59,30 @@ fn is_running(pid: u32) -> bool {
     {
         let _ = pid;
         true
+    }
+}
+
+/// Gives way to other programs, at least this much. It is the threads started from now on that do.
+///
+/// # Errors
+/// With the reason why it cannot be done.
+pub fn be_nice(niceness: u8) -> Result<(), String> {
+    #[cfg(unix)]
+    {
+        // SAFETY: numbers go in, and numbers come out. What fails gives -1, which counts for less than any niceness asked for.
+        let now = unsafe { libc::getpriority(libc::PRIO_PROCESS, 0) };
+        // A process that is nicer already stays so: less is not for everybody to ask.
+        if now >= niceness.into() {
+            return Ok(());
+        }
+        // SAFETY: as above.
+        let fine = unsafe { libc::setpriority(libc::PRIO_PROCESS, 0, niceness.into()) } == 0;
+        if fine { Ok(()) } else { Err(std::io::Error::last_os_error().to_string()) }
+    }
+    #[cfg(not(unix))]
+    {
+        let _ = niceness;
+        Err("this system knows no niceness".to_owned())
     }
 }
 

@@ -4,6 +4,7 @@ use crate::args::{ProgressKind, RenderArgs};
 use crate::claim;
 use crate::input::{self, what_is};
 use crate::kept;
+use crate::machine;
 use crate::many;
 use crate::output::{self, beside, is_standard, refuse_inputs};
 use crate::paths;
@@ -15,6 +16,7 @@ use crate::signals;
 use serde_json::json;
 use snell::render::{Options, Rendered};
 use snell::scene::WarningCode;
+use snell::threads::{self, ByDefault};
 use snell_formats::given::Given;
 use snell_formats::load::Loaded;
 use snell_formats::picture::Format;
@@ -51,6 +53,7 @@ pub fn run(args: &RenderArgs) -> Outcome {
         Some(again) => vec![again.display().to_string()],
         None => args.scenes.clone(),
     };
+    behave(args);
     if !kept::is_asked(args) && (args.until.is_some() || args.every.is_some()) {
         let report = Report::error("--until and --every need a file that keeps what is done");
         return Err(Failure::new(USAGE, report.help("name one, like --checkpoint work.npz")));
@@ -91,6 +94,33 @@ pub fn run(args: &RenderArgs) -> Outcome {
             let message = format!("{} of {} scenes were not drawn", failures.len(), names.len());
             Err(Failure::new(code, Report::error(message)))
         }
+    }
+}
+
+/// Gives way to others, before there are any threads, and says what is odd about how many there will be.
+fn behave(args: &RenderArgs) {
+    if let Some(niceness) = args.nice
+        && let Err(why) = machine::be_nice(niceness)
+    {
+        note(args, &format!("--nice {niceness} cannot be done: {why}; the render goes on as it is"));
+    }
+    if args.threads != 0 {
+        return;
+    }
+    let ByDefault { count, variable, ignored } = ByDefault::here();
+    let why = variable.map_or("one for each core that may be used".to_owned(), |name| format!("as {name} says"));
+    for (name, read) in ignored {
+        let expected = format!("a number of threads from 1 to {} was expected", threads::MOST);
+        note(args, &format!("{name} is `{read}`, and {expected}; there are {count} instead, {why}"));
+    }
+}
+
+/// Says something that is neither an error nor odd about the scene.
+fn note(args: &RenderArgs, message: &str) {
+    match args.progress {
+        ProgressKind::Json => tell(&json!({ "event": "note", "message": message }).to_string()),
+        ProgressKind::Auto if args.quiet => {}
+        ProgressKind::Auto => tell(&format!("note: {message}")),
     }
 }
 
@@ -212,12 +242,8 @@ fn read(name: &str, args: &RenderArgs) -> Result<(Recipe, Loaded), Failure> {
     }
     if let Some(from) = &args.from {
         let (recipe, loaded, notes) = of_picture(from, &args.reading.search, &changes)?;
-        for note in notes {
-            match args.progress {
-                ProgressKind::Json => tell(&json!({ "event": "note", "message": note }).to_string()),
-                ProgressKind::Auto if args.quiet => {}
-                ProgressKind::Auto => tell(&format!("note: {note}")),
-            }
+        for message in notes {
+            note(args, message);
         }
         return Ok((recipe, loaded));
     }
@@ -337,7 +363,7 @@ fn summary(ready: &Ready, rendered: &Rendered, args: &RenderArgs, options: &Opti
                 "file": output, "width": film.crop.width, "height": film.crop.height, "seconds": seconds,
                 "rays": { "camera": rays.camera, "mirror": rays.mirror, "refracted": rays.refracted, "shadow": rays.shadow },
                 "depth": statistics.depth,
-                "lanes": options.lanes.numbers(),
+                "threads": threads::count(options.threads), "lanes": options.lanes.numbers(),
                 "tree": { "nodes": tree.nodes, "leaves": tree.leaves, "depth": tree.depth },
                 "lost": {
                     "rays": lost.rays, "share": lost.share(rays.camera), "worst": lost.worst(settings.spp), "worst_pixel": [worst_x, worst_y],

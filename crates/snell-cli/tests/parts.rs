@@ -4,7 +4,7 @@
 
 mod common;
 
-use common::{command, run, snell, stderr};
+use common::{command, run, snell, stderr, stdout};
 use std::fs;
 use std::path::Path;
 use std::process::Stdio;
@@ -117,6 +117,106 @@ fn a_render_goes_on_as_it_was_begun() {
         &["render", "-q", "scene.toml", "--size", "20x20", "--spp", "1", "--checkpoint", "one.npz", "-o", "one.png"],
     );
     refused(at, &["render", "--resume", "one.npz", "--spp", "2", "-o", "one.png"], 2, "the point of the grid");
+}
+
+/// Samples were added later, on machines that began with that and on others that did not.
+#[test]
+fn parts_of_fewer_and_of_more_samples_join() {
+    let folder = workplace();
+    let at = folder.path();
+    let part = |spp: &str, more: &[&str]| {
+        run(at, &[&["render", "-q", "scene.toml", "--size", "60x45", "--spp", spp][..], more].concat());
+    };
+    part("64", &["--part", "first.npz"]);
+    part("128", &["--samples", "64:128", "--part", "more.npz"]);
+    part("128", &["-o", "at-once.png"]);
+    part("128", &["--part", "at-once.npz"]);
+    for order in [["first.npz", "more.npz"], ["more.npz", "first.npz"]] {
+        run(at, &[&["merge", "-q"][..], &order, &["-o", "merged.png"]].concat());
+        assert!(bytes(at, "merged.png") == bytes(at, "at-once.png"), "{order:?}");
+        // What the samples took is in it, too.
+        run(at, &[&["merge", "-q"][..], &order, &["-o", "merged.npz"]].concat());
+        run(at, &["merge", "-q", "at-once.npz", "-o", "tree.npz"]);
+        assert!(bytes(at, "merged.npz") == bytes(at, "tree.npz"), "{order:?}");
+    }
+    // Alone it is whole; with more it is not.
+    run(at, &["merge", "-q", "first.npz", "-o", "x.png"]);
+    part("128", &["--samples", "65:128", "--part", "gap.npz"]);
+    refused(at, &["merge", "first.npz", "gap.npz", "-o", "x.png"], 1, "samples 64");
+    // The point of the grid is no sample of many.
+    part("1", &["--rows", "0:20", "--part", "one.npz"]);
+    part("2", &["--rows", "20:45", "--part", "two.npz"]);
+    refused(at, &["merge", "one.npz", "two.npz", "-o", "x.png"], 1, "`spp` is 1 in one and 2 in the other");
+    refused(at, &["merge", "more.npz", "one.npz", "-o", "x.png"], 1, "`spp` is 128 in one and 1 in the other");
+}
+
+fn events(output: &std::process::Output, kind: &str) -> Vec<serde_json::Value> {
+    let lines: Vec<serde_json::Value> =
+        stderr(output).lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    lines.into_iter().filter(|event| event["event"] == kind).collect()
+}
+
+#[test]
+fn a_farm_sees_which_samples_are_done() {
+    let folder = workplace();
+    let at = folder.path();
+    let json = |more: &[&str]| snell(at, &[RENDER, &["--progress", "json"], more].concat());
+    let rows_31_to_60 = ["--rows", "31:61", "--samples", "0:12", "--part", "a.npz"];
+    let kept = events(&json(&rows_31_to_60), "kept").pop().unwrap();
+    assert_eq!(kept["file"], "a.npz");
+    // A third of the rows, half of the samples.
+    assert!((kept["share"].as_f64().unwrap() - 1.0 / 6.0).abs() < 1e-12, "{kept}");
+    let rect = serde_json::json!({ "x": 0, "y": 31, "width": 120, "height": 30 });
+    assert_eq!(kept["pieces"], serde_json::json!([{ "rect": rect, "samples": [[0, 12]] }]));
+    assert_eq!(kept["more_pieces"], 0);
+
+    let output = json(&["--checkpoint", "k.npz", "--every", "0.02s", "--threads", "1", "-o", "p.png"]);
+    let kept = events(&output, "kept");
+    let shares: Vec<f64> = kept.iter().map(|event| event["share"].as_f64().unwrap()).collect();
+    assert!(shares.len() > 1 && shares.is_sorted() && shares.last() == Some(&1.0), "{shares:?}");
+    let times: Vec<u64> = kept.iter().map(|event| event["times"].as_u64().unwrap()).collect();
+    assert!((1..).zip(&times).all(|(number, &times)| number == times), "{times:?}");
+
+    // Tiles of one pixel, stopped in the middle, leave more pieces than anybody wants to read.
+    let stop = ["--checkpoint", "tiny.npz", "--until", "0.05s", "--tile", "1", "--threads", "1", "-o", "q.png"];
+    let output = json(&stop);
+    assert_eq!(output.status.code(), Some(130));
+    let [kept, interrupted] = ["kept", "interrupted"].map(|kind| events(&output, kind).pop().unwrap());
+    let header = snell_formats::part::PartFile::open(&at.join("tiny.npz")).unwrap().header().clone();
+    for event in [kept, interrupted] {
+        assert_eq!(event["share"], header.share());
+        let listed = event["pieces"].as_array().unwrap().len();
+        assert_eq!(listed, header.pieces.len().min(100));
+        assert_eq!(event["more_pieces"], header.pieces.len() - listed);
+    }
+}
+
+#[test]
+fn info_says_what_a_part_is_of() {
+    let folder = workplace();
+    let at = folder.path();
+    let part = ["--crop", "10,20,60,40", "--rows", "20:30", "--samples", "6:18", "--set", "material.water.eta=1.4"];
+    run(at, &[RENDER, &part, &["--part", "a.npz"]].concat());
+    let said = stdout(&run(at, &["info", "a.npz"]));
+    let snell = concat!("made by      Snell ", env!("CARGO_PKG_VERSION"));
+    for line in [
+        "a.npz: a part of a picture of 120 x 90 pixels, 24 samples each",
+        snell,
+        "scene        scene.toml (its text: --scene)",
+        "changed      material.water.eta=1.4",
+        "crop         10,20,60,40",
+        "has          rows 20 to 29, columns 10 to 69, samples 6 to 17",
+        "share        12.5 % of all samples of the crop",
+        "go on        snell render --resume a.npz",
+    ] {
+        assert!(said.lines().any(|said| said == line), "{line}: {said}");
+    }
+    let rays = said.lines().find_map(|line| line.strip_prefix("rays         ")).unwrap().parse::<u64>().unwrap();
+    assert!(rays >= 60 * 10 * 12, "{rays}");
+    assert_eq!(stdout(&run(at, &["info", "a.npz", "--scene"])), fs::read_to_string(at.join("scene.toml")).unwrap());
+    let whole = bytes(at, "a.npz");
+    fs::write(at.join("a.npz"), &whole[..whole.len() - 100]).unwrap();
+    refused(at, &["info", "a.npz"], 1, "the part `a.npz` cannot be read: it is no whole ZIP archive");
 }
 
 /// Killed at moments that have nothing to do with what it does: the file is always whole, and the picture the same in the end.

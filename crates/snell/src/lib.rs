@@ -40,7 +40,7 @@ pub mod optics;
 pub mod rays;
 pub mod render;
 pub mod scene;
-mod threads;
+pub mod threads;
 pub mod world;
 
 pub use snell_kernels::{texture, trace};

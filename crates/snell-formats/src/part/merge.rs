@@ -20,6 +20,8 @@ const NAMED: usize = 5;
 #[derive(Debug)]
 pub struct Merge {
     parts: Vec<PartFile>,
+    /// Which of them says what the whole is: the first one of those that want the most samples.
+    leading: usize,
     crop: Crop,
     grid: Grid,
     /// Of each cell, which samples are there.
@@ -27,7 +29,7 @@ pub struct Merge {
 }
 
 impl Merge {
-    /// Parts that belong together.
+    /// Parts that belong together. Those of a picture to which samples were added later may want fewer of them.
     ///
     /// # Errors
     /// If they are of different pictures, with the first difference, or have samples in common, with their pixels.
@@ -37,6 +39,7 @@ impl Merge {
             same_picture(first, other)?;
         }
         let crop = first.header().crop;
+        let leading = (0..parts.len()).rev().max_by_key(|&number| parts[number].header().spp).unwrap_or_default();
         let rects = parts.iter().flat_map(|part| part.header().pieces.iter().map(|piece| piece.rect));
         let grid = Grid::new(crop, u32::MAX, rects);
         let mut there: Vec<Vec<([u32; 2], usize)>> = vec![Vec::new(); grid.cells().count()];
@@ -70,12 +73,12 @@ impl Merge {
             joined
         };
         let there = there.iter().map(joined).collect();
-        Ok(Self { parts, crop, grid, there })
+        Ok(Self { parts, leading, crop, grid, there })
     }
 
-    /// What the first part says of the picture.
+    /// What is said of the picture by the part that wants the most samples.
     pub fn header(&self) -> &Header {
-        self.parts[0].header()
+        self.parts[self.leading].header()
     }
 
     /// Fails with what is missing of the picture, if anything is.
@@ -255,7 +258,12 @@ fn same_picture(a: &PartFile, b: &PartFile) -> Result<(), Report> {
         let words = |crop: Crop| format!("{} x {} pixels at {},{}", crop.width, crop.height, crop.x, crop.y);
         Some(format!("it is of {} in one and of {} in the other", words(first.crop), words(other.crop)))
     } else {
-        first.recipe.difference(&other.recipe)
+        // A sample is the same however many there are; but one alone is the point of the grid, which is none of many.
+        let mut recipe = other.recipe.clone();
+        if first.spp > 1 && other.spp > 1 {
+            recipe.spp = first.recipe.spp;
+        }
+        first.recipe.difference(&recipe)
     };
     match what {
         None => Ok(()),
@@ -277,7 +285,7 @@ pub fn incomplete(missing: &[Piece]) -> Option<Report> {
 }
 
 /// Pixels and samples, for people.
-fn words(rect: Crop, samples: &[[u32; 2]]) -> String {
+pub fn words(rect: Crop, samples: &[[u32; 2]]) -> String {
     let Crop { x, y, width, height } = rect;
     let range =
         |first: u32, end: u32| if end == first + 1 { first.to_string() } else { format!("{first} to {}", end - 1) };

@@ -14,7 +14,7 @@ mod merge;
 mod read;
 mod write;
 
-pub use merge::{Merge, incomplete};
+pub use merge::{Merge, incomplete, words};
 pub use read::{PartFile, check};
 pub use write::write;
 
@@ -59,6 +59,13 @@ impl Header {
         recipe.film_sha256 = None;
         let spp = recipe.spp.unwrap_or(1);
         Self { snell_part: VERSION, recipe, size, crop, spp, pieces, statistics }
+    }
+
+    /// How much of the samples of the picture is there, from 0 to 1; the shares of all parts of a picture add up to 1.
+    pub fn share(&self) -> f64 {
+        let samples = |piece: &Piece| piece.samples.iter().map(|[first, end]| f64::from(end - first)).sum::<f64>();
+        let there: f64 = self.pieces.iter().map(|piece| piece.pixel_count() as f64 * samples(piece)).sum();
+        there / (f64::from(self.crop.width) * f64::from(self.crop.height) * f64::from(self.spp))
     }
 }
 

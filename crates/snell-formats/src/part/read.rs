@@ -70,8 +70,11 @@ impl PartFile {
             if read != beginning {
                 return Err(format!("`{name}` does not begin like the array that `part.json` speaks of"));
             }
-            // Reading to the end compares the checksum.
-            io::copy(&mut entry, &mut io::sink()).map_err(|e| format!("`{name}`: {e}"))?;
+            // Reading to the end compares the checksum, but not the length, which an archive may promise and not keep.
+            let read = io::copy(&mut entry, &mut io::sink()).map_err(|e| format!("`{name}`: {e}"))?;
+            if read != 8 * numbers {
+                return Err(format!("`{name}` ends after {read} bytes of numbers, and {} were expected", 8 * numbers));
+            }
             let start = entry.data_start().ok_or("its numbers are nowhere")?;
             Ok(start + beginning.len() as u64)
         };

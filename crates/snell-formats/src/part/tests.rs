@@ -140,6 +140,39 @@ fn what_is_cut_off_or_changed_is_refused() {
     assert!(PartFile::open(&path).is_err() && PartFile::open(Path::new("nowhere.npz")).is_err());
 }
 
+/// A header promises more pixels than there are, and so does the directory of the archive, whose checksums are right.
+#[test]
+fn promises_take_no_memory() {
+    let (made, folder) = (Made::new(&[]), tempfile::tempdir().unwrap());
+    let path = folder.path().join("a.npz");
+    let promised = |side: u32| {
+        let rect = Crop { x: 0, y: 0, width: side, height: side };
+        let mut header = Header::new(&made.recipe, [side; 2], vec![], Statistics::default());
+        (header.crop, header.pieces) = (rect, vec![Piece { rect, samples: vec![[0, 1]] }]);
+        disk::write(&path, |out| {
+            let mut writer = write::Writer::new(out, &header)?;
+            writer.begin_lost(&header)?;
+            writer.finish(&header)
+        })
+        .unwrap();
+    };
+    let (rect, samples) = (Crop { x: 0, y: 0, width: 1_000_000_000, height: 1_000_000_000 }, vec![[0, 1]]);
+    let said = check([1_000_000_000; 2], rect, 1, &[Piece { rect, samples }]).unwrap_err();
+    assert_eq!(said, "more pixels than can be counted");
+    promised(500_000_000);
+    let said = PartFile::open(&path).unwrap_err().message;
+    assert!(said.contains("`sums.npy` has 128 bytes, and 6000000000000000128 were expected"), "{said}");
+    promised(10_000);
+    let mut bytes = std::fs::read(&path).unwrap();
+    for (name, size) in [(&b"sums.npy"[..], 128 + 24 * 100_000_000u32), (b"lost.npy", 128 + 8 * 100_000_000)] {
+        let entry = bytes.windows(name.len()).rposition(|window| window == name).unwrap() - 46;
+        bytes[entry + 24..entry + 28].copy_from_slice(&size.to_le_bytes());
+    }
+    std::fs::write(&path, bytes).unwrap();
+    let said = PartFile::open(&path).unwrap_err().message;
+    assert!(said.contains("`sums.npy` ends after 0 bytes of numbers, and 2400000000 were expected"), "{said}");
+}
+
 /// A change of a header, and why it is refused.
 type Change<'a> = (&'a dyn Fn(&mut Header), &'a str);
 

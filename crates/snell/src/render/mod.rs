@@ -27,7 +27,7 @@ pub const TILE_SIZE: u32 = 32;
 /// How to render; nothing here changes a bit of the picture but `crop`, which cuts it.
 #[derive(Clone, Copy)]
 pub struct Options<'a> {
-    /// Worker threads; 0: as many as the machine has cores.
+    /// Worker threads; 0: [those by default](crate::threads::ByDefault).
     pub threads: usize,
     /// Edge of a square tile in pixels, at least 1.
     pub tile_size: u32,

@@ -42,7 +42,7 @@ impl CompiledScene {
         Self::build(name, scene, Quality::default(), 0)
     }
 
-    /// Compiles a scene with a tree of this quality, on so many threads, 0 for as many as the machine has cores.
+    /// Compiles a scene with a tree of this quality, on so many threads, 0 for [those by default](crate::threads::ByDefault).
     ///
     /// # Errors
     /// As [`World::new`].

@@ -68,7 +68,7 @@ impl World {
         Self::build(scene, Quality::default(), 0)
     }
 
-    /// Compiles a scene with a tree of this quality, on so many threads, 0 for as many as the machine has cores. Neither
+    /// Compiles a scene with a tree of this quality, on so many threads, 0 for [those by default](crate::threads::ByDefault). Neither
     /// changes the picture.
     ///
     /// # Errors

@@ -18,8 +18,7 @@ const WORTH_THREADS: usize = 1 << 12;
 
 /// Builds the tree. `margin` is the room that each box has around its primitives: at least [`MARGIN`] times the largest
 /// distance between a ray's origin and a primitive.
-/// `models`: the trees that stand at the instances; they have none of their own. `threads`: 0 for as many as the
-/// machine has cores.
+/// `models`: the trees that stand at the instances; they have none of their own. `threads`: 0 for those by default.
 pub fn build(shapes: &Shapes<'_>, models: Vec<Bvh>, margin: f64, quality: Quality, threads: usize) -> Bvh {
     let firsts = shapes.firsts();
     let padded = |i| OuterBox::around(&shapes.bounds_from(&firsts, i), margin);
