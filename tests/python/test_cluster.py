@@ -7,6 +7,7 @@ import os
 import pickle
 import random
 import signal
+import subprocess
 import sys
 import threading
 import time
@@ -24,6 +25,7 @@ import snell
 from snell.cluster import plan
 from snell.cluster.engine import Cluster, Engine, Job
 
+ROOT = Path(__file__).resolve().parents[2]
 #: Glass on glass with lost light, in an odd size, which no number of bands divides.
 HOW: dict[str, Any] = {"width": 61, "height": 43, "spp": 21, "depth": 3}
 
@@ -264,6 +266,15 @@ def test_a_cluster_that_is_restarted_says_so() -> None:
         other.close()
 
 
+def test_the_recipe_of_the_documentation_is_run_as_it_stands_there(tmp_path: Path) -> None:
+    page = (ROOT / "docs" / "scale.md").read_text()
+    recipe = page[page.index("With Dask, on the processors of this machine") :].split("```python\n")[1].split("```")[0]
+    (tmp_path / "recipe.py").write_text(recipe)
+    subprocess.run([sys.executable, "recipe.py"], cwd=tmp_path, check=True, timeout=120, capture_output=True)
+    snell.scenes["gallery/ball"].render(width=640, spp=64, progress=False).save(tmp_path / "here.exr")
+    assert (tmp_path / "ball.exr").read_bytes() == (tmp_path / "here.exr").read_bytes()
+
+
 def test_plans_have_each_sample_once() -> None:
     for first, end, most in [(0, 1, 9), (1, 64, 0.1), (5, 37, 9.7), (0, 65536, 1e12), (3, 100, 1), (7, 8, 4)]:
         chunks = plan.chunks((first, end), most)
@@ -301,8 +312,7 @@ def test_tasks_take_the_time_that_they_should(client: Callable[..., Any]) -> Non
 
 def test_a_plan_for_many_workers_is_what_they_take() -> None:
     """The same with 200 workers is `python benches/cluster.py --simulate 200`, which takes a minute."""
-    path = Path(__file__).resolve().parents[2] / "benches" / "cluster.py"
-    spec = importlib.util.spec_from_file_location("snell_plan", path)
+    spec = importlib.util.spec_from_file_location("snell_plan", ROOT / "benches" / "cluster.py")
     assert spec and spec.loader
     sys.modules[spec.name] = bench = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(bench)
