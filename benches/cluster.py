@@ -157,8 +157,8 @@ class Waiting:
     def __init__(self, seconds_of_row: float) -> None:
         self.seconds_of_row = seconds_of_row
 
-    def load(self, scene: bytes) -> int:
-        return len(scene)
+    def load(self, pieces: list[bytes]) -> int:
+        return sum(map(len, pieces))
 
     def render(self, scene: int, crop: object, rows: tuple[int, int], samples: tuple[int, int]) -> Waited:
         del scene, crop

@@ -6,7 +6,8 @@ import hashlib
 import json
 import os
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
+from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -112,24 +113,29 @@ def sweep(
     ]
     known: set[Finding] = set()
     done, rays = len(frames) - len(missing), 0
+    most = (0, 0)
     with watcher(progress, scene.name, _note(len(frames), done)) as watch:
 
         def within(pixels: int, total: int, more: int) -> None:
+            nonlocal most
+            # With a cluster several frames are under way, and what was counted once stays counted.
+            most = (max(most[0], done * total + pixels), max(most[1], rays + more))
             if watch:
-                watch(done * total + pixels, len(frames) * total, rays + more)
+                watch(most[0], len(frames) * total, most[1])
 
         drawn = (
             _one_by_one((missing, changed), known, within if watch else None, said)
             if client is None
             else _on_cluster((missing, changed), known, within, said, (client, task_seconds))
         )
-        for index, picture in drawn:
-            picture.save(frames[index])
-            notes[frames[index].name] = made_of[index]
-            with replacing(folder / _NOTES) as beside:  # a note that is half written would cost all frames
-                beside.write_text(json.dumps(notes))
-            done, rays = done + 1, rays + picture.rays
-            within(0, picture.width * picture.height, 0)
+        with closing(drawn):
+            for index, picture in drawn:
+                picture.save(frames[index])
+                notes[frames[index].name] = made_of[index]
+                with replacing(folder / _NOTES) as beside:  # a note that is half written would cost all frames
+                    beside.write_text(json.dumps(notes))
+                done, rays = done + 1, rays + picture.rays
+                within(0, picture.width * picture.height, 0)
     return Sweep(frames, columns)
 
 
@@ -138,7 +144,7 @@ def _one_by_one(
     known: set[Finding],
     watch: Watch | None,
     said: Mapping[str, Any],
-) -> Iterator[tuple[int, Picture]]:
+) -> Generator[tuple[int, Picture]]:
     """Render frames here."""
     missing, changed = frames
     for index in missing:
@@ -154,7 +160,7 @@ def _on_cluster(
     watch: Watch,
     said: Mapping[str, Any],
     cluster: tuple[object, float],
-) -> Iterator[tuple[int, Picture]]:
+) -> Generator[tuple[int, Picture]]:
     """Render frames on a cluster, in the order in which they are done."""
     from .cluster.engine import Cluster  # noqa: PLC0415 # Dask is not needed otherwise
     from .cluster.pictures import render_all  # noqa: PLC0415 # Dask is not needed otherwise

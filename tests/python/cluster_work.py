@@ -23,8 +23,8 @@ class Work:
     def __init__(self, seconds: float) -> None:
         self.seconds = seconds
 
-    def load(self, scene: bytes) -> int:
-        return len(scene)
+    def load(self, pieces: list[bytes]) -> int:
+        return sum(map(len, pieces))
 
     def render(self, world: int, crop: object, rows: Range, samples: Range) -> Fake:
         del world, crop

@@ -4,17 +4,21 @@ from __future__ import annotations
 
 import math
 import pickle
+import queue
+import threading
 import time
 import uuid
-import warnings
+import weakref
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from functools import partial
+from numbers import Real
 from types import ModuleType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from .._native import NativePart, NativeWorld
-from ..errors import RenderError, SceneError, SnellError
+from ..errors import RenderError, SceneError, SnellError, warn
 from ..how import Region
 from . import plan, tasks
 from .plan import Band, Range
@@ -22,8 +26,15 @@ from .plan import Band, Range
 if TYPE_CHECKING:
     from distributed import Client, Future
 
+T = TypeVar("T")
+
 #: So many answers should be waited for, for each thread.
 _AHEAD = 2
+_SHORTEST, _LONGEST = 1e-3, 1e6
+#: How long something is waited for that may not come, in seconds.
+_PATIENCE = 5.0
+#: Bytes of a scene in one task.
+_PIECE = 1 << 22
 #: So many bands more than threads make up for those that are quick.
 _SPARE = 16
 
@@ -36,7 +47,7 @@ class Cluster:
     client : distributed.Client
         Not an asynchronous one.
     task_seconds : float
-        How long a task should take, above 0.
+        How long a task should take: 0.001 to 1000000.
 
     Raises
     ------
@@ -46,8 +57,10 @@ class Cluster:
 
     def __init__(self, client: object, task_seconds: float) -> None:
         self.client = _checked(client)
-        if not (isinstance(task_seconds, int | float) and 0 < task_seconds < math.inf):
-            raise SceneError([("task_seconds", f"expected a number of seconds above 0, read {task_seconds!r}", None)])
+        is_number = isinstance(task_seconds, Real) and not isinstance(task_seconds, bool)
+        if not (is_number and _SHORTEST <= task_seconds <= _LONGEST):
+            message = f"expected {_SHORTEST:g} to {_LONGEST:g} seconds, read {task_seconds!r}"
+            raise SceneError([("task_seconds", message, None)])
         self.task_seconds = float(task_seconds)
 
 
@@ -81,12 +94,14 @@ class Job:
 class Engine:
     """Renders pictures on the workers of a cluster.
 
+    Nothing here waits in Dask's own `sync`: ^C in there would break the client.
+
     Parameters
     ----------
     cluster : Cluster
         Who does it.
     watch : callable, optional
-        Called whenever something has come back.
+        Called whenever something has come back, and once a second.
     work : module
         What the workers do; a simulation has others.
     """
@@ -94,19 +109,23 @@ class Engine:
     def __init__(
         self, cluster: Cluster, watch: Callable[[], object] | None = None, work: ModuleType | Any = tasks
     ) -> None:
+        from distributed import as_completed  # noqa: PLC0415 # it is there, as there is a client
+
         self.client = cluster.client
         self._wanted = cluster.task_seconds
         self._watch = watch or (lambda: None)
         self._work = work
         self._run = uuid.uuid4().hex[:8]
-        #: How many tasks have been handed out.
-        self.tasks = 0
+        #: How many tasks have been handed out; workers, and what they run at a time.
+        self.tasks = self.workers = self.threads = 0
         #: What happens when something has come back, by its key; the futures are held until then.
-        self._waiting: dict[str, tuple[Job, Future, list[Callable[[Future], object]]]] = {}
-        self._arrivals: Any = None
+        self._waiting: dict[str, _Waiting] = {}
+        self._arrivals = as_completed(loop=self.client.loop)
+        self._futures: weakref.WeakSet[Future] = weakref.WeakSet()
         self._running: list[Job] = []
         #: Seconds for a sample of one pixel, as the pictures before were.
         self._known: float | None = None
+        self._looked = self._alone_since = -math.inf
 
     def finished(self, jobs: Iterable[Job], count: int = 1) -> Iterator[Job]:
         """Render pictures, and yield each when all of it has come back. `count` is how many there are.
@@ -116,24 +135,25 @@ class Engine:
         RenderError
             If the cluster gives up; what workers raise is raised here.
         """
-        from distributed import as_completed  # noqa: PLC0415 # it is there, as there is a client
+        with _out_of_the_way():
+            yield from self._finished(iter(jobs), count)
 
-        self._arrivals = as_completed()
-        queue, running = iter(jobs), self._running
-        is_empty = False
+    def _finished(self, jobs: Iterator[Job], count: int) -> Iterator[Job]:
+        running, is_empty = self._running, False
+        self._look_around()
         while True:
-            threads = sum(self.client.nthreads().values())
-            while not is_empty and len(self._waiting) < _AHEAD * max(threads, 1):
-                job = next(queue, None)
+            while not is_empty and len(self._waiting) < _AHEAD * max(self.threads, 1):
+                job = next(jobs, None)
                 is_empty = job is None
                 if job is not None:
                     running.append(job)
-                    bands = min(2 * threads, threads + _SPARE)
+                    bands = min(2 * self.threads, self.threads + _SPARE)
                     self._start(job, math.ceil(max(bands, 1) / count))
             if not running:
                 return
             while not (is_done := [job for job in running if not job.open]):
-                self._take(next(self._arrivals))
+                for future in self._next():
+                    self._take(future)
             for job in is_done:
                 running.remove(job)
                 self._learn(job)
@@ -141,26 +161,52 @@ class Engine:
                 yield job
 
     def so_far(self, job: Job) -> list[NativePart]:
-        """Return what there is of a picture, wherever it is."""
-        there = [part for band in job.bands for part in band.parts]
-        back: list[NativePart] = self.client.gather(there, errors="skip")
-        return [*job.parts, *back]
+        """Return what there is of a picture, if it comes back soon."""
+        there = [part for band in job.bands for part in band.parts if part.status == "finished"]
+        back: list[NativePart] | None = _elsewhere(lambda: self.client.gather(there, errors="skip"), _PATIENCE)
+        return [*job.parts, *(back or [])]
 
     def cancel(self) -> None:
         """Give up what is under way. Tasks that run already come to their end, which nobody waits for."""
-        self.client.cancel([future for _, future, _ in self._waiting.values()])
         self._waiting.clear()
-        self._arrivals.clear()
         for job in self._running:
             _let_go(job)
+        # Dask forgets what nobody wants. Whatever goes wrong here, something has gone wrong before, which is said.
+        with suppress(Exception):
+            self._arrivals.clear()
+            for future in list(self._futures):
+                future.release()
+
+    def _next(self) -> list[Future]:
+        """Wait for what comes back next."""
+        while not (batch := self._arrivals.next_batch(block=False)):
+            if time.monotonic() > self._looked + 1:
+                self._look_around()
+                self._watch()
+            time.sleep(0.005)
+        return list(batch)
+
+    def _look_around(self) -> None:
+        """See who is there."""
+        workers = _elsewhere(self.client.nthreads, _PATIENCE) or {}
+        now = time.monotonic()
+        self.workers, self.threads, self._looked = len(workers), sum(workers.values()), now
+        if self.workers or self._alone_since < 0:
+            self._alone_since = now
+        elif now > self._alone_since + 2 * _PATIENCE:
+            warn("the cluster has no workers; the picture goes on when there are some")
+            self._alone_since = math.inf
 
     def _start(self, job: Job, count: int) -> None:
         """Hand out the first tasks of a picture."""
         job.started = time.monotonic()
-        # In the task itself, and not scattered: data of a lost worker are made again only if a task made them.
-        with warnings.catch_warnings():
-            warnings.filterwarnings("ignore", message="Sending large graph")
-            job.scene = self._submit("scene", self._work.load, pickle.dumps(job.world, protocol=5))
+        # In tasks, and not scattered: Dask makes again what a lost worker had only if a task had made it. In pieces, as
+        # it warns of large ones.
+        scene = pickle.dumps(job.world, protocol=5)
+        pieces = [scene[at : at + _PIECE] for at in range(0, len(scene), _PIECE)]
+        if len(pieces) > 1:
+            pieces = [self._submit("piece", bytes, piece) for piece in pieces]
+        job.scene = self._submit("scene", self._work.load, pieces)
         _, top, _, height = job.region
         known = None if self._known is None else self._known * job.pixels * job.world.spp
         if known is not None:
@@ -187,8 +233,8 @@ class Engine:
         part = self._render(job, band.rows, samples, 0)
         cost = self._submit("cost", self._work.cost, part)
 
-        def arrived(future: Future) -> None:
-            seconds, rays = future.result()
+        def arrived(measured: tuple[float, int]) -> None:
+            seconds, rays = measured
             _count(job, band.rows, samples)
             job.rays += rays
             band.rays += rays
@@ -219,22 +265,21 @@ class Engine:
             for chunk in plan.chunks(samples, of_task):
                 part = self._render(job, band.rows, chunk, -number)
                 leaves.append(part)
-                self._wait(job, part, partial(_count, job, band.rows, chunk))
+                self._wait(job, part, partial(_count, job, band.rows, chunk), fetch=False)
             while len(leaves) > plan.FAN_IN:
                 leaves = [
                     self._join(leaves[at : at + plan.FAN_IN], -number) for at in range(0, len(leaves), plan.FAN_IN)
                 ]
             there = [self._join([*there, *leaves], -number)]
             if samples[1] < band.spp:
-                self._wait(job, there[0], partial(_take_over, band))
+                self._wait(job, there[0], partial(_take_over, band, there[0]), fetch=False)
         band.asked = band.spp
         self._collect(job, band, there[0])
 
     def _collect(self, job: Job, band: Band, part: Future) -> None:
         """Fetch a band when it is done."""
 
-        def arrived(future: Future) -> None:
-            back = future.result()
+        def arrived(back: NativePart) -> None:
             job.parts.append(back)
             job.rays += back.rays - band.rays
             band.parts = []
@@ -250,14 +295,17 @@ class Engine:
     def _submit(self, what: str, function: Callable[..., Any], *arguments: Any, priority: int = 0) -> Future:
         self.tasks += 1
         key = f"snell-{what}-{self._run}-{self.tasks}"
-        return self.client.submit(function, *arguments, key=key, priority=priority)
+        future = self.client.submit(function, *arguments, key=key, priority=priority)
+        self._futures.add(future)
+        return future
 
-    def _wait(self, job: Job, future: Future, arrived: Callable[[Future], object]) -> None:
+    def _wait(self, job: Job, future: Future, arrived: Callable[[Any], object], *, fetch: bool = True) -> None:
+        """Do something when a task is done, with its result if that is to be fetched."""
         job.open += 1
         if future.key not in self._waiting:
-            self._waiting[future.key] = job, future, []
+            self._waiting[future.key] = _Waiting(job, future)
             self._arrivals.add(future)
-        self._waiting[future.key][2].append(arrived)
+        self._waiting[future.key].arrived.append((arrived, fetch))
 
     def _take(self, future: Future) -> None:
         """Do what is to be done with what has come back."""
@@ -266,15 +314,69 @@ class Engine:
             self._arrivals.add(future)
             return
         if future.status == "error":
-            raise _failed(future.exception())
+            raise _failed(_elsewhere(future.exception))
         if future.status != "finished":
             message = f"the cluster has let go of a task: it is {future.status}"
             raise RenderError([(None, message, "was it restarted, or cancelled by somebody else?")])
-        job, _, arrived = self._waiting.pop(future.key)
-        for each in arrived:
-            each(future)
-            job.open -= 1
+        waiting = self._waiting.pop(future.key)
+        result = None
+        if any(fetch for _, fetch in waiting.arrived):
+            try:
+                result = _elsewhere(future.result)
+            except Exception as error:
+                raise _failed(error) from error
+        for arrived, _ in waiting.arrived:
+            arrived(result)
+            waiting.job.open -= 1
         self._watch()
+
+
+@dataclass
+class _Waiting:
+    """What is waited for, and what happens then."""
+
+    job: Job
+    future: Future
+    #: With the result, if it is to be fetched.
+    arrived: list[tuple[Callable[[Any], object], bool]] = field(default_factory=list)
+
+
+@contextmanager
+def _out_of_the_way() -> Iterator[None]:
+    """Leave the place of a task that renders to other tasks, which it waits for."""
+    from distributed import get_worker, rejoin, secede  # noqa: PLC0415 # it is there, as there is a client
+
+    try:
+        get_worker()
+    except ValueError:
+        yield
+        return
+    secede()
+    try:
+        yield
+    finally:
+        rejoin()
+
+
+def _elsewhere(wait: Callable[[], T], seconds: float = math.inf) -> T | None:
+    """Wait in a thread of its own, for so long at most, so that ^C ends only the waiting; None if it took longer."""
+    result: queue.SimpleQueue[tuple[T | None, BaseException | None]] = queue.SimpleQueue()
+
+    def work() -> None:
+        try:
+            result.put((wait(), None))
+        except BaseException as error:
+            result.put((None, error))
+
+    threading.Thread(target=work, daemon=True, name="snell-waits").start()
+    until = time.monotonic() + seconds
+    while time.monotonic() < until:
+        with suppress(queue.Empty):
+            value, error = result.get(timeout=0.1)
+            if error is not None:
+                raise error
+            return value
+    return None
 
 
 def _count(job: Job, rows: Range, samples: Range, _: object = None) -> None:
@@ -288,7 +390,7 @@ def _let_go(job: Job) -> None:
     job.bands.clear()
 
 
-def _take_over(band: Band, joined: Future) -> None:
+def _take_over(band: Band, joined: Future, _: object = None) -> None:
     """Let what a pass has come to stand for all before it."""
     band.parts = [joined]
 
@@ -309,6 +411,8 @@ def _checked(client: object) -> Client:
     if not isinstance(client, Client):
         help = "like distributed.Client(), which starts a cluster of this machine's processors"
         raise SceneError([("client", f"expected a client of Dask, read {client!r}", help)])
+    if client.status != "running":
+        raise SceneError([("client", f"the client is {client.status}", "make another one")])
     if client.asynchronous:
         raise SceneError(
             [("client", "an asynchronous client cannot be waited for", "use one without asynchronous=True")]
@@ -316,7 +420,7 @@ def _checked(client: object) -> Client:
     return client
 
 
-def _failed(error: BaseException) -> BaseException:
+def _failed(error: BaseException | None) -> BaseException:
     """Return what is said of a task that failed."""
     from distributed import KilledWorker  # noqa: PLC0415 # it is there
 

@@ -32,7 +32,7 @@ def render(
 
     def note(pixels: int, total: int, rays: int, seconds: float) -> str:
         del rays  # most are still with the workers
-        workers = len(cluster.client.nthreads())
+        workers = engine.workers
         left = f"{duration(seconds * (total - pixels) / pixels)} left  " if pixels else ""
         return f"{100 * pixels / total:3.0f} %  {left}{workers} worker{'s' if workers != 1 else ''}"
 
@@ -51,12 +51,9 @@ def render(
             for _ in engine.finished([job]):
                 pass
         except KeyboardInterrupt:
-            parts = engine.so_far(job)
+            return made(engine.so_far(job), True)
+        finally:
             engine.cancel()
-            return made(parts, True)
-        except BaseException:
-            engine.cancel()
-            raise
     return made(job.parts, False)
 
 
@@ -86,9 +83,8 @@ def render_all(
         for job in engine.finished(jobs(), count):
             number = numbers.pop(job)
             yield number, job.world.merge(crop, job.parts, False, time.monotonic() - job.started)
-    except BaseException:
+    finally:
         engine.cancel()
-        raise
 
 
 @contextmanager

@@ -12,9 +12,9 @@ from ..how import Region
 from .plan import Range
 
 
-def load(scene: bytes) -> NativeWorld:
+def load(pieces: Sequence[bytes]) -> NativeWorld:
     """Return a scene, which is compiled when its first rays are traced."""
-    world: NativeWorld = pickle.loads(scene)
+    world: NativeWorld = pickle.loads(b"".join(pieces))
     return world
 
 
