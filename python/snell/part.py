@@ -13,9 +13,9 @@ Rectangle = tuple[int, int, int, int]
 
 
 class Part:
-    """Some samples of some rows of a picture: what `Scene.render_part` returns, and `Scene.merge` makes pictures of.
+    """Some samples of some rows of a picture: what `Scene.render_part` returns and `Scene.merge` takes.
 
-    It can be pickled, and so be sent to other processes and machines. It does not have the scene in it.
+    It can be pickled and sent to other processes and machines. It does not contain the scene.
 
     Examples
     --------
@@ -32,7 +32,7 @@ class Part:
 
     @classmethod
     def join(cls, parts: Iterable[Part]) -> Part:
-        """Return one part that has all that several parts of one picture have.
+        """Return one part with all samples of several parts of one picture.
 
         Raises
         ------
@@ -44,12 +44,12 @@ class Part:
 
     @property
     def pieces(self) -> list[tuple[Rectangle, list[Range]]]:
-        """What is there: rectangles (left, top, width, height in pixels), and of each the ranges of its samples."""
+        """What it contains: rectangles (left, top, width, height in pixels), each with its ranges of samples."""
         return self._native.pieces()
 
     @property
     def seconds(self) -> float:
-        """Seconds that it took to render; of a joined one all of them together."""
+        """Seconds that it took to render; for a joined part, the sum."""
         return self._native.seconds
 
     @property

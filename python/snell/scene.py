@@ -343,17 +343,17 @@ class Scene(Value):
         shadows : {"off", "opaque", "tinted"}, optional
             What stands between a surface and a light.
         threads : int
-            0 to 4096; 0, the default, for as many as SNELL_THREADS, OMP_NUM_THREADS or SLURM_CPUS_PER_TASK says, or the
-            machine has. It changes no bit of the picture.
+            0 to 4096. 0, the default, takes SNELL_THREADS, OMP_NUM_THREADS or SLURM_CPUS_PER_TASK, or else all
+            available cores. It changes no bit of the picture. With a `client` it must be 0.
         progress : bool or callable
             By default a bar, on a terminal and in notebooks, for what takes longer; False for none; or what is called
             with pixels done, pixels in all, and rays (with a `client` those that have come back).
         client : distributed.Client, optional
-            Render on the workers of this Dask cluster, to the same bits: each runs as many tasks as it has threads.
-            Notebooks show what has come back. It needs ``pip install "snell[cluster]"``.
+            Render on the workers of this Dask cluster, to the same bits. A worker runs one task per thread.
+            Notebooks show the picture so far. It needs ``pip install '.[cluster]'``, from a clone.
         task_seconds : float
-            With a `client`: how long a task should take, in seconds, by what it measures; by default 4. Tasks that are
-            longer cost less to hand out, and more if a worker is lost.
+            With a `client`: how long a task should take, in seconds; by default 4. Longer tasks
+            have less overhead, but lose more work with a lost worker.
 
         Raises
         ------
@@ -396,16 +396,16 @@ class Scene(Value):
         progress: bool | Callable[[int, int, int], object] = True,
         **how: Unpack[How],
     ) -> Part:
-        """Render some samples of some rows, for `merge`: in any process, on any machine.
+        """Render some samples of some rows, for `merge`, in any process on any machine.
 
         ^C ends it with KeyboardInterrupt.
 
         Parameters
         ----------
         rows : (2,) of int, optional
-            The first row, and the one behind the last, in the whole picture; by default all.
+            The first row and the one after the last, in the whole picture; by default all.
         samples : (2,) of int, optional
-            The first sample of each pixel, and the one behind the last; by default all that ``spp`` says.
+            The first sample of each pixel and the one after the last; by default all ``spp`` of them.
         progress, **how
             What `render` takes: width, height, crop, spp, depth, seed, integrator, shadows, threads.
 
@@ -427,17 +427,17 @@ class Scene(Value):
             return Part(world.render_part(threads, region, of_rows, of_samples, watch), said)
 
     def merge(self, parts: Iterable[Part]) -> Picture:
-        """Return the picture that parts make, to the bits of `render`.
+        """Return the picture that parts add up to, with the same bits as from `render`.
 
         Parameters
         ----------
         parts : iterable of Part
-            Of this scene, made with the same settings; in any order.
+            Parts of this scene, rendered with the same settings, in any order.
 
         Raises
         ------
         PictureError
-            If something is missing, is there twice, or is of another picture.
+            If something is missing, duplicated, or of another picture.
         """
         native, how = joinable(parts)
         world, region = self._compiled(how), how_of.region(how)

@@ -40,25 +40,25 @@ def sweep(
     task_seconds: float = 4.0,
     **how: Unpack[How],
 ) -> Sweep:
-    """Render a frame for each step of some values, and skip what is done already.
+    """Render a frame for each step of some values, and skip finished frames.
 
-    The folder remembers in ``sweep.json`` of what each frame was made: a sweep that was stopped goes on where it was,
+    The folder remembers in ``sweep.json`` what each frame was made from: a stopped sweep continues where it was,
     one of a changed scene, or of changed models and images, starts again, and a frame that is gone or damaged is
-    rendered anew. ^C stops it, and raises KeyboardInterrupt. What is odd is warned of once, not with each frame.
+    rendered again. ^C stops it and raises KeyboardInterrupt. Each warning is issued once, not for every frame.
 
     Parameters
     ----------
     scene : Scene
         What all frames have in common.
     values : dict of str to sequence
-        By the keys of `Scene.with_`; all of one length, and they go on together.
+        By the keys of `Scene.with_`; all of one length, and they advance together.
     out : path
         The folder of the frames, ``0000.png`` and so on; it is made if need be.
     progress : bool or callable
-        A bar over all frames; or what is called with the pixels of all frames that are done, that there are, and rays.
+        A bar over all frames; or a function that is called with pixels done, pixels in all (of all frames), and rays.
     client, task_seconds : distributed.Client, float, optional
-        Render on a Dask cluster, as for `Scene.render`. Frames that are quick are one task each; the folder is this
-        machine's.
+        Render on a Dask cluster, as for `Scene.render`. Quick frames are one task each; the folder is on this
+        machine.
     **how
         What else `Scene.render` takes: width, height, crop, spp, depth, seed, integrator, shadows, threads.
 

@@ -11,6 +11,7 @@ import subprocess
 import sys
 import threading
 import time
+import warnings
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -203,6 +204,35 @@ def test_stopped_it_is_the_picture_so_far(client: Any, whole: snell.Picture) -> 
     assert same(scene().render(client=client, progress=False, **HOW), whole)
 
 
+def test_a_client_stays_usable_however_often_it_is_stopped() -> None:
+    """In a cluster that is not the default one, as in a notebook with two; stopped while it waits for workers, too."""
+    with (
+        LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0") as cluster,
+        Client(cluster, set_as_default=False) as client,
+    ):
+        mine = client.submit(sum, [1, 2, 3])
+        for stop in range(12):
+            timer = threading.Timer(0.01 + 0.02 * stop, signal.raise_signal, [signal.SIGINT])
+            timer.start()
+            try:
+                with warnings.catch_warnings():
+                    warnings.simplefilter("ignore")
+                    scene().render(client=client, task_seconds=0.01, progress=False, **{**HOW, "spp": 4000})
+            except KeyboardInterrupt:  # before there was anything to return
+                pass
+            timer.join()
+        assert mine.result(timeout=10) == 6, "futures of others are let alone"
+        cluster.scale(0)
+        while client.nthreads():
+            time.sleep(0.05)
+        timer = threading.Timer(1, signal.raise_signal, [signal.SIGINT])
+        timer.start()
+        with pytest.warns(snell.SnellWarning, match="stopped"):
+            assert not scene().render(client=client, progress=False, **HOW).finished
+        cluster.scale(1)
+        assert scene().render(client=client, progress=False, **HOW).finished
+
+
 def test_frames_of_a_cluster_are_those_of_one_process(client: Any, tmp_path: Path) -> None:
     values = {"material.water.eta": [1.1, 1.2, 1.3, 1.4, 1.5]}
     how = {**HOW, "spp": 3}
@@ -271,7 +301,7 @@ def test_the_recipe_of_the_documentation_is_run_as_it_stands_there(tmp_path: Pat
     recipe = page[page.index("With Dask, on the processors of this machine") :].split("```python\n")[1].split("```")[0]
     (tmp_path / "recipe.py").write_text(recipe)
     subprocess.run([sys.executable, "recipe.py"], cwd=tmp_path, check=True, timeout=120, capture_output=True)
-    snell.scenes["gallery/ball"].render(width=640, spp=64, progress=False).save(tmp_path / "here.exr")
+    snell.scenes["gallery/ball"].render(width=320, spp=64, progress=False).save(tmp_path / "here.exr")
     assert (tmp_path / "ball.exr").read_bytes() == (tmp_path / "here.exr").read_bytes()
 
 

@@ -89,36 +89,36 @@ pub struct RenderArgs {
     #[arg(long, value_name = "PICTURE", conflicts_with_all = ["scenes", "dialect"])]
     pub from: Option<PathBuf>,
 
-    /// Write sums of samples, for `snell merge`, instead of a picture: those of --rows and --samples
+    /// Write a part for `snell merge` instead of a picture: the samples that --rows and --samples select
     #[arg(long, value_name = "FILE.npz", conflicts_with_all = ["output", "paths", "only"], help_heading = "Parts")]
     pub part: Option<PathBuf>,
-    /// Only these rows of the picture: from the first one to before the second one
+    /// With --part: only rows A to B - 1
     #[arg(long, value_name = "A:B", requires = "part", value_parser = range, help_heading = "Parts")]
     pub rows: Option<[u32; 2]>,
-    /// Only these samples of each pixel, of those that --spp counts: from the first one to before the second one
+    /// With --part: only samples A to B - 1 of each pixel, out of --spp
     #[arg(long, value_name = "A:B", requires = "part", value_parser = range, help_heading = "Parts")]
     pub samples: Option<[u32; 2]>,
-    /// Keep what is done in this file while it renders, and when it is stopped
+    /// Save the work to this file while rendering, and when stopped
     #[arg(long, value_name = "FILE.npz", conflicts_with_all = ["part", "paths", "only"], help_heading = "Parts")]
     pub checkpoint: Option<PathBuf>,
-    /// How often: 30s (default), 10m, 2h
+    /// How often to save: 30s (default), 10m, 2h
     #[arg(long, value_name = "TIME", value_parser = duration, help_heading = "Parts")]
     pub every: Option<Duration>,
-    /// Go on with a checkpoint or a part, and keep what is done in it; with a larger --spp, add samples
+    /// Continue a checkpoint or part, and save to it; with a larger --spp, add samples
     #[arg(long, value_name = "FILE.npz", conflicts_with_all = ["scenes", "from", "part", "dialect", "paths", "only"], help_heading = "Parts")]
     pub resume: Option<PathBuf>,
-    /// Stop after this time, and keep what is done
+    /// Stop after this time (like 2h), and save the work
     #[arg(long, value_name = "TIME", value_parser = duration, help_heading = "Parts")]
     pub until: Option<Duration>,
 
-    /// A picture for each value of a key: A:B:N, N numbers evenly from A to B, or a list, like `["BK7", "SF10"]`; given many times,
-    /// for all combinations; what is finished is skipped, and several machines may run the same command on one folder
+    /// A picture for each value of a key: A:B:N (N evenly spaced numbers) or a list, like `["BK7", "SF10"]`; if repeated,
+    /// all combinations; finished pictures are skipped, and several machines may run the same command on one folder
     #[arg(long, value_name = "KEY=VALUES", conflicts_with_all = MANY_NOT, help_heading = "Many pictures")]
     pub sweep: Vec<String>,
-    /// A picture for each frame, by key frames of the camera or any other key in a file
-    #[arg(long, visible_alias = "path", value_name = "FILE.toml", conflicts_with_all = MANY_NOT, help_heading = "Many pictures")]
+    /// A picture for each frame of a movie; the file gives key frames of the camera or any other key of the scene
+    #[arg(long, value_name = "FILE.toml", conflicts_with_all = MANY_NOT, help_heading = "Many pictures")]
     pub keys: Option<PathBuf>,
-    /// Frames from the first one to the last one, both included; from the first key frame to the last if left out
+    /// Frames A to B, both included; by default from the first key frame to the last
     #[arg(long, value_name = "A:B", requires = "keys", value_parser = frames, help_heading = "Many pictures")]
     pub frames: Option<[u32; 2]>,
 
@@ -168,10 +168,10 @@ pub struct RenderArgs {
     pub reading: ReadingArgs,
 
     /// Threads; 0: as many as `SNELL_THREADS` says, else `OMP_NUM_THREADS`, else `SLURM_CPUS_PER_TASK`, else one for each core that
-    /// this process may use (affinity, quotas of its groups)
+    /// this process may use (affinity, CPU quotas)
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024), help_heading = "Work")]
     pub threads: u16,
-    /// Give way to other programs: niceness 10, or N, from 0 to 19
+    /// Let other programs go first: niceness 10, or --nice=N, from 0 to 19
     #[arg(long, value_name = "N", num_args = 0..=1, require_equals = true, default_missing_value = "10", value_parser = clap::value_parser!(u8).range(0..=19), help_heading = "Work")]
     pub nice: Option<u8>,
     /// Edge of a tile in pixels; the picture does not depend on it
@@ -353,7 +353,7 @@ Examples:
   snell render scene.toml --spp 64 --samples 0:32 --part a.npz
   snell render scene.toml --spp 64 --samples 32:64 --part b.npz
   snell merge a.npz b.npz -o picture.png
-  snell merge part-1*.npz -o part-1.npz       some of many, into one part")]
+  snell merge part-1*.npz -o tenth.npz        some of many, into one part")]
 pub struct MergeArgs {
     /// Parts (`snell render --part`, or checkpoints) of one picture, of which no sample is there twice; of different --spp, above
     /// 1, they join to a picture of the largest

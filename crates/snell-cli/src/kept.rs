@@ -211,6 +211,11 @@ fn rescue(report: Report, file: &Path, header: &Header, film: &PartialFilm) -> R
     }
 }
 
+/// The option that names the picture, if there was one, to be given again.
+pub fn output_argument(args: &RenderArgs) -> String {
+    args.output.as_ref().map_or_else(String::new, |output| format!(" -o {}", output.display()))
+}
+
 /// Says how far it has come, and how it goes on.
 fn stopped(file: &Path, header: &Header, args: &RenderArgs) {
     if args.progress == ProgressKind::Json {

@@ -58,6 +58,16 @@ pub fn run(args: &RenderArgs) -> Outcome {
         let report = Report::error("--until and --every need a file that keeps what is done");
         return Err(Failure::new(USAGE, report.help("name one, like --checkpoint work.npz")));
     }
+    // clap's `requires` does not see what it needs where that conflicts with something else that is there.
+    for (given, name, needed) in [
+        (args.rows.is_some() && args.part.is_none(), "--rows", "--part FILE.npz"),
+        (args.samples.is_some() && args.part.is_none(), "--samples", "--part FILE.npz"),
+        (args.frames.is_some() && args.keys.is_none(), "--frames", "--keys FILE.toml"),
+    ] {
+        if given {
+            return Err(Failure::new(USAGE, Report::error(format!("{name} needs {needed}"))));
+        }
+    }
     if kept::is_asked(args) && names.len() > 1 {
         let report = Report::error("--part and --checkpoint are of one picture");
         return Err(Failure::new(USAGE, report.help("render the scenes with several commands")));
@@ -173,7 +183,8 @@ fn refuse_work(checkpoint: &Path, args: &RenderArgs) -> Outcome {
     }
     if checkpoint.is_file() && args.resume.as_deref() != Some(checkpoint) {
         let report = Report::error(format!("the checkpoint `{shown}` is there already"));
-        let help = format!("go on with it: snell render --resume {shown}; or remove it, or name another file");
+        let output = kept::output_argument(args);
+        let help = format!("go on with it: snell render --resume {shown}{output}; or remove it, or name another file");
         return Err(Failure::new(USAGE, report.help(help)));
     }
     Ok(())

@@ -143,7 +143,7 @@ fn key_frames_make_movies() {
     is("3.png", "0.4375", "1.5");
     is("9.png", "0.25", "1.7");
     let more =
-        ["render", "scene.toml", "--size", "12x8", "--path", "keys.toml", "--frames", "8:12", "-o", "m/{frame}.png"];
+        ["render", "scene.toml", "--size", "12x8", "--keys", "keys.toml", "--frames", "8:12", "-o", "m/{frame}.png"];
     ends(at, &more, 0, "5 pictures: 5 drawn");
     assert!(at.join("m/08.png").exists() && at.join("m/12.png").exists());
     let usual = [
@@ -296,7 +296,7 @@ fn claims_of_others_are_left_while_they_are_renewed_and_taken_when_not() {
     assert!(!at.join("0.5.png").exists() && claim.exists());
     let output = start().wait_with_output().unwrap();
     assert!(
-        said(&output).contains("waiting for 1 pictures that are claimed elsewhere (far-away)"),
+        said(&output).contains("waiting for what other processes have claimed (far-away): 1 in all"),
         "{}",
         said(&output)
     );

@@ -72,6 +72,23 @@ fn parts_of_any_lanes_and_threads_join_to_the_very_file() {
     assert!(!at.join("x.png").exists() && !at.join("x.npz").exists());
 }
 
+/// clap overlooks what an option needs where that conflicts with another that is there, like `-o`.
+#[test]
+fn an_option_that_would_do_nothing_is_refused() {
+    let folder = workplace();
+    let at = folder.path();
+    for (option, value, needed) in [
+        ("--rows", "0:10", "--rows needs --part"),
+        ("--samples", "0:4", "--samples needs --part"),
+        ("--frames", "1:4", "--frames needs --keys"),
+    ] {
+        refused(at, &[RENDER, &[option, value, "-o", "x.png", "--checkpoint", "x.npz"]].concat(), 2, needed);
+        let said = snell(at, &[RENDER, &[option, value, "-o", "x.png"]].concat());
+        assert_eq!(said.status.code(), Some(2), "{}", stderr(&said));
+    }
+    assert!(!at.join("x.png").exists());
+}
+
 #[test]
 fn a_render_goes_on_as_it_was_begun() {
     let folder = workplace();

@@ -348,10 +348,10 @@ def _out_of_the_way() -> Iterator[None]:
 
     try:
         get_worker()
-    except ValueError:
+        secede()
+    except (ValueError, KeyError):  # it is no task, or has left its place already, as `worker_client` does
         yield
         return
-    secede()
     try:
         yield
     finally:
@@ -406,7 +406,7 @@ def _checked(client: object) -> Client:
     try:
         from distributed import Client  # noqa: PLC0415 # nobody else needs it
     except ImportError as error:
-        help = 'python -m pip install "snell[cluster]"'
+        help = "python -m pip install distributed"
         raise SceneError([("client", f"Dask is not installed: {error}", help)]) from None
     if not isinstance(client, Client):
         help = "like distributed.Client(), which starts a cluster of this machine's processors"

@@ -201,8 +201,8 @@ impl<'a> Many<'a> {
         let hosts = self.tally.hosts();
         let name = self.outputs[first].display();
         let message = format!(
-            "waiting for {count} pictures that are claimed elsewhere ({hosts}), `{name}` first: until they are done, or their claims \
-             have not been renewed for {seconds:.0} s"
+            "waiting for what other processes have claimed ({hosts}): {count} in all, `{name}` first; until they are done, or their \
+             claims have not been renewed for {seconds:.0} s"
         );
         match self.args.progress {
             _ if self.args.quiet => {}
