@@ -22,7 +22,7 @@ class Part:
     >>> import snell
     >>> scene = snell.scenes["lecture/default"]
     >>> parts = [scene.render_part(samples=(start, start + 2), width=64, spp=4) for start in (0, 2)]
-    >>> (scene.merge(parts).array == scene.render(width=64, spp=4).array).all()
+    >>> bool((scene.merge(parts).array == scene.render(width=64, spp=4).array).all())
     True
     """
 

@@ -102,7 +102,7 @@ def test_what_the_scene_says_keeps_its_place() -> None:
 
 
 def test_all_that_render_have_the_same_parameters(tmp_path: Path) -> None:
-    taken = set(inspect.signature(Scene.render).parameters) - {"self", "progress"}
+    taken = set(inspect.signature(Scene.render).parameters) - {"self", "progress", "client", "task_seconds"}
     assert taken == set(How.__annotations__)
     assert set(How.__annotations__) - set(Settings.__annotations__) == {"crop", "threads"}
     settings: dict[str, Any] = {
