@@ -52,15 +52,20 @@ fn every_format_comes_back() {
 }
 
 #[test]
-fn unfinished_pixels_are_transparent() {
+fn unfinished_pixels_of_which_nothing_is_known_are_transparent() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.png");
-    write(&path, Format::Png { sixteen_bit: false }, &film(true), LINEAR, None).unwrap();
-    let mut reader = ::png::Decoder::new(std::io::Cursor::new(std::fs::read(&path).unwrap())).read_info().unwrap();
-    let mut data = vec![0; reader.output_buffer_size().unwrap()];
-    assert_eq!(reader.next_frame(&mut data).unwrap().color_type, ::png::ColorType::Rgba);
-    let alpha: Vec<u8> = data.iter().skip(3).step_by(4).copied().collect();
-    assert_eq!(alpha, [255, 255, 255, 255, 255, 0]);
+    let alpha = |film: &Film| {
+        write(&path, Format::Png { sixteen_bit: false }, film, LINEAR, None).unwrap();
+        let mut reader = ::png::Decoder::new(std::io::Cursor::new(std::fs::read(&path).unwrap())).read_info().unwrap();
+        let mut data = vec![0; reader.output_buffer_size().unwrap()];
+        assert_eq!(reader.next_frame(&mut data).unwrap().color_type, ::png::ColorType::Rgba);
+        data.iter().skip(3).step_by(4).copied().collect::<Vec<u8>>()
+    };
+    let mut film = film(true);
+    assert_eq!(alpha(&film), [255; 6], "some samples are there");
+    film.pixels[5] = Rgb::black();
+    assert_eq!(alpha(&film), [255, 255, 255, 255, 255, 0]);
 }
 
 #[test]
