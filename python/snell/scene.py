@@ -352,8 +352,8 @@ class Scene(Value):
             Render on the workers of this Dask cluster, to the same bits. A worker runs one task per thread.
             Notebooks show the picture so far. It needs ``pip install '.[cluster]'``, from a clone.
         task_seconds : float
-            With a `client`: how long a task should take, in seconds; by default 4. Longer tasks
-            have less overhead, but lose more work with a lost worker.
+            With a `client`: how long a task should take at most, in seconds, 0.001 to 1000000; by default 4. Longer
+            tasks have less overhead, but lose more work with a lost worker.
 
         Raises
         ------

@@ -35,6 +35,8 @@ _SHORTEST, _LONGEST = 1e-3, 1e6
 _PATIENCE = 5.0
 #: Bytes of a scene in one task.
 _PIECE = 1 << 22
+#: A picture is cut into so many tasks for each thread, if none is shorter than that then, in seconds.
+_SHARES, _SHORT = 16, 0.2
 #: So many bands more than threads make up for those that are quick.
 _SPARE = 16
 
@@ -259,7 +261,10 @@ class Engine:
         """Hand out all that is left of a band, and how it is joined: pass by pass, in trees."""
         assert band.seconds is not None, "it has been measured"
         there = list(band.parts)
-        of_task = self._wanted / max(band.seconds, 1e-12)
+        # Whoever is done first waits for the last task: where there is less to do, tasks are shorter.
+        left = band.seconds * band.rest * len(job.bands)
+        wanted = min(self._wanted, max(left / (_SHARES * max(self.threads, 1)), _SHORT))
+        of_task = wanted / max(band.seconds, 1e-12)
         for number, samples in enumerate(plan.passes((band.asked, band.spp), of_task / 2)):
             leaves = []
             for chunk in plan.chunks(samples, of_task):
