@@ -198,7 +198,7 @@ def simulate(workers: int, task_seconds: float = 2.0, seconds: float = 20.0) -> 
         started = time.perf_counter()
         (done,) = engine.finished([job])
         taken = time.perf_counter() - started
-        assert sum(part.samples for part in done.parts) == size * spp
+        assert sum(part.samples for part in done.parts) == size * spp  # type: ignore[attr-defined]
     return taken, predict((size * size, spp), workers, known, math.inf, task_seconds)
 
 

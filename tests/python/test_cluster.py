@@ -195,7 +195,9 @@ def test_stopped_it_is_the_picture_so_far(client: Any, whole: snell.Picture) -> 
         picture = scene().render(client=client, task_seconds=0.02, progress=progress, **HOW)
     assert not picture.finished and picture.array.any()
     assert picture.array.shape == whole.array.shape and not np.array_equal(picture.array, whole.array)
-    assert abs(picture.array.mean() - whole.array.mean()) < 0.2 * whole.array.mean(), "what is there is shown"
+    # More than half of the samples are there, the first ones of all rows among them: what is missing is noise, of which
+    # the mean of a picture has little. A black band would be a quarter of it: there are four.
+    assert abs(picture.array.mean() / whole.array.mean() - 1) < 0.1, "what is there is shown"
     # Nothing is left behind, and it goes on.
     deadline = time.monotonic() + 20
     while client.run_on_scheduler(lambda dask_scheduler: len(dask_scheduler.tasks)) and time.monotonic() < deadline:
@@ -211,13 +213,14 @@ def test_a_client_stays_usable_however_often_it_is_stopped() -> None:
         Client(cluster, set_as_default=False) as client,
     ):
         mine = client.submit(sum, [1, 2, 3])
+        # One that falls into a destructor Python swallows: then it is some seconds until the picture is done.
         for stop in range(12):
             timer = threading.Timer(0.01 + 0.02 * stop, signal.raise_signal, [signal.SIGINT])
             timer.start()
             try:
                 with warnings.catch_warnings():
                     warnings.simplefilter("ignore")
-                    scene().render(client=client, task_seconds=0.01, progress=False, **{**HOW, "spp": 4000})
+                    scene().render(client=client, task_seconds=0.01, progress=False, **{**HOW, "spp": 400})
             except KeyboardInterrupt:  # before there was anything to return
                 pass
             timer.join()
@@ -337,6 +340,8 @@ def test_tasks_take_the_time_that_they_should(client: Callable[..., Any]) -> Non
     assert looks == sorted(looks)
     # Twice as long as the work alone: the machine may be busy.
     assert seconds < 2 * (43 * 21 * 0.005 / 2) + 1, f"{tasks} tasks in {seconds:.1f} s"
+    # Four bands, each with some trials and joins, and 23 tasks of 0.2 s, the shortest: far from one for each of the 903
+    # samples of a row.
     assert tasks < 200
 
 
@@ -351,5 +356,7 @@ def test_a_plan_for_many_workers_is_what_they_take() -> None:
     assert said.rendering <= taken < 1.5 * said.seconds + 1, f"{taken:.1f} s, predicted {said}"
     known = bench.Constants(1e-6, 1e-3, 3e8, 3e8)
     times = [bench.predict((8192**2, 4096), threads, known, 1e8) for threads in (10, 100, 1000, 10_000)]
-    assert times[0].limit == "rays" and times[0].seconds > 5 * times[1].seconds > 25 * times[2].seconds
-    assert times[3].scheduling < times[3].tasks * 1e-3 * 1.01
+    # 275 000 s of rays; a task takes 1 ms, so that 10 000 threads wait for the scheduler.
+    assert [each.limit for each in times] == ["rays", "rays", "rays", "scheduler"]
+    # Ten times the threads, less what the last tasks and the network take.
+    assert times[0].seconds > 5 * times[1].seconds > 25 * times[2].seconds

@@ -82,7 +82,8 @@ pub fn render(
     options: &Options<'_>,
 ) -> Result<Option<Rendered>, Failure> {
     let size = compiled.world().camera.size;
-    let mut film = begun(size, recipe, args)?;
+    let crop = options.crop_of(compiled.world()).map_err(of_render)?;
+    let mut film = begun(size, crop, args)?;
     let [first, end] = args.samples.unwrap_or([0, settings.spp]);
     let (file, started) = (file(args), Instant::now());
     let last = args.until.map(|until| started + until);
@@ -143,14 +144,7 @@ fn of_render(error: RenderError) -> Failure {
 }
 
 /// Nothing yet, or what has been kept.
-fn begun(size: [u32; 2], recipe: &Recipe, args: &RenderArgs) -> Result<PartialFilm, Failure> {
-    let [width, height] = size;
-    let mut crop = recipe.crop.unwrap_or(Crop { x: 0, y: 0, width, height });
-    let fits =
-        |start: u32, length: u32, limit: u32| length > 0 && start.checked_add(length).is_some_and(|e| e <= limit);
-    if !fits(crop.x, crop.width, width) || !fits(crop.y, crop.height, height) {
-        return Err(of_render(RenderError::CropOutside { crop, size }));
-    }
+fn begun(size: [u32; 2], mut crop: Crop, args: &RenderArgs) -> Result<PartialFilm, Failure> {
     if let Some([first, end]) = args.rows {
         if first < crop.y || end > crop.y + crop.height {
             let rows = format!("rows {} to {}", crop.y, crop.y + crop.height - 1);
@@ -221,9 +215,9 @@ fn stopped(file: &Path, header: &Header, args: &RenderArgs) {
     if args.progress == ProgressKind::Json {
         tell(&of_kept("interrupted", file, header).to_string());
     } else if !args.quiet {
-        let (percent, shown) = (100.0 * header.share(), file.display());
+        let (percent, shown, output) = (100.0 * header.share(), file.display(), output_argument(args));
         tell(&format!(
-            "stopped: {percent:.1} % of the samples are kept in {shown}; go on with: snell render --resume {shown}"
+            "stopped: {percent:.1} % of the samples are kept in {shown}; go on with: snell render --resume {shown}{output}"
         ));
     }
 }

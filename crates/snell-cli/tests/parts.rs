@@ -96,6 +96,9 @@ fn a_render_goes_on_as_it_was_begun() {
     let stopped = snell(at, &[RENDER, &["--checkpoint", "k.npz", "--until", "0.1s", "-o", "p.png"]].concat());
     assert!(stopped.status.code() == Some(130) && !at.join("p.png").exists(), "{}", stderr(&stopped));
     let half = bytes(at, "k.npz");
+    let said =
+        snell(at, &["render", "scene.toml", "--spp", "999", "--checkpoint", "l.npz", "--until", "0.1s", "-o", "x.exr"]);
+    assert!(stderr(&said).contains("go on with: snell render --resume l.npz -o x.exr"), "{}", stderr(&said));
     refused(
         at,
         &[RENDER, &["--checkpoint", "k.npz", "-o", "p.png"]].concat(),

@@ -73,9 +73,11 @@ impl NativePart {
         let whole = whole.map_err(|error| refused("crop", error.to_string()))?;
         let [first, end] = rows.unwrap_or([whole.y, whole.y + whole.height]);
         if first >= end || first < whole.y || end > whole.y + whole.height {
-            let last = whole.y + whole.height - 1;
-            let message =
-                format!("there are no rows {first} to {end}, the last one not counted: they are {} to {last}", whole.y);
+            let message = format!(
+                "expected rows from {} to {}, the last one excluded, read {first} to {end}",
+                whole.y,
+                whole.y + whole.height
+            );
             return Err(refused("rows", message));
         }
         let rect = Crop { y: first, height: end - first, ..whole };
@@ -116,24 +118,11 @@ impl NativePart {
         self.film.statistics().rays.total()
     }
 
-    /// Samples of all its pixels.
-    #[getter]
-    fn samples(&self) -> u64 {
-        let of_pixel = |piece: &Piece| piece.samples.iter().map(|[first, end]| u64::from(end - first)).sum::<u64>();
-        self.film.pieces().iter().map(|piece| piece.pixel_count() * of_pixel(piece)).sum()
-    }
-
     /// Bytes of its numbers.
     #[getter]
     fn bytes(&self) -> u64 {
         let of_pixel = |piece: &Piece| 24 * piece.blocks().len() as u64 + 8;
         self.film.pieces().iter().map(|piece| piece.pixel_count() * of_pixel(piece)).sum()
-    }
-
-    /// Digest of the recipe.
-    #[getter]
-    fn of(&self) -> &str {
-        &self.of
     }
 
     /// What is there: left, top, width, height, and ranges of samples.

@@ -225,7 +225,6 @@ impl NativeWorld {
     }
 
     /// Renders some samples of some rows of the picture, or of the part of it that is wanted.
-    #[pyo3(signature = (threads, crop, rows, samples, progress))]
     fn render_part(
         &self,
         py: Python<'_>,

@@ -214,14 +214,13 @@ class Engine:
         if known is not None:
             # Pictures like the ones before need no trials, and no more tasks than are worth it.
             count = min(count, math.ceil(known / self._wanted))
-        for rows in plan.bands(top, top + height, count):
-            band = Band(rows, job.world.spp)
-            job.bands.append(band)
+        job.bands += [Band(rows, job.world.spp) for rows in plan.bands(top, top + height, count)]
+        for band in job.bands:
             if self._known is None:
                 self._try(job, band)
             else:
-                width = job.region[2]
-                band.measured((0, 1), self._known * width * (rows[1] - rows[0]), math.inf)
+                pixels = job.region[2] * (band.rows[1] - band.rows[0])
+                band.measured((0, 1), self._known * pixels, math.inf)
                 self._finish(job, band)
 
     def _learn(self, job: Job) -> None:
@@ -285,9 +284,10 @@ class Engine:
         """Fetch a band when it is done."""
 
         def arrived(back: NativePart) -> None:
+            # In this order ^C between the two can lose a band of the picture so far, and never have it twice.
+            band.parts = []
             job.parts.append(back)
             job.rays += back.rays - band.rays
-            band.parts = []
 
         self._wait(job, part, arrived)
 
@@ -435,9 +435,7 @@ def _failed(error: BaseException | None) -> BaseException:
         message = (
             f"a task was given up: it has ended {error.allowed_failures + 1} workers, the last one {error.last_worker}"
         )
-        help = (
-            "most often their memory was full, which their logs say: give them more, or choose a smaller task_seconds"
-        )
+        help = "most often their memory was full, which their logs say: give them more, or fewer threads"
         return RenderError([(None, message, help)])
     is_other = isinstance(error, ImportError | AttributeError)
     help_of_version = "all workers need Snell, and the same version of it" if is_other else None

@@ -31,7 +31,7 @@ pub(super) fn write(
     for (pixels, finished_pixels) in film.pixels.chunks_exact(width).zip(film.finished.chunks_exact(width)) {
         row.clear();
         for (pixel, &done) in pixels.iter().zip(finished_pixels) {
-            // Of a pixel that has a colour some samples are there, which is worth to be seen.
+            // Of a pixel that has a colour some samples are there, which are worth showing.
             let is_seen = done || *pixel != Rgb::black();
             let alpha = (!finished).then_some(if is_seen { max } else { 0 });
             for value in pixel.to_array().map(|c| encoding.encode(c, max)).into_iter().chain(alpha) {

@@ -152,7 +152,7 @@ impl Grid {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum JoinError {
     /// They are of pictures of different sizes.
-    #[error("one is of a picture of {} x {} pixels, another of one of {} x {}", .0[0], .0[1], .1[0], .1[1])]
+    #[error("they are of pictures of different sizes: {} x {} and {} x {} pixels", .0[0], .0[1], .1[0], .1[1])]
     OtherSize([u32; 2], [u32; 2]),
     /// They have samples in common.
     #[error(transparent)]
