@@ -44,7 +44,7 @@ fn within_address_space() -> Option<u64> {
 #[cfg(target_family = "wasm")]
 fn within_instance() -> Option<u64> {
     const PAGE: u64 = 1 << 16;
-    Some((1 << 32) - PAGE * core::arch::wasm32::memory_size(0) as u64)
+    (1_u64 << 32).checked_sub(PAGE * core::arch::wasm32::memory_size(0) as u64)
 }
 
 #[cfg(not(target_family = "wasm"))]

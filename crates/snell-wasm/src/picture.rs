@@ -11,9 +11,8 @@ use snell_formats::recipe::Changes;
 use snell_formats::{Report, memory};
 
 /// How a picture is asked for: what is left out is as the scene has it.
-#[derive(Deserialize)]
+#[derive(Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-#[derive(Default)]
 pub struct Asked {
     size: Option<[u32; 2]>,
     spp: Option<u32>,
@@ -29,7 +28,9 @@ impl Asked {
     /// Reads options.
     pub fn parse(options: Option<&str>) -> Result<Self, Report> {
         let Some(options) = options else { return Ok(Self::default()) };
-        serde_json::from_str(options).map_err(|e| {
+        // As an object alone: serde would take a list for its values.
+        let object: serde_json::Result<serde_json::Map<_, _>> = serde_json::from_str(options);
+        object.and_then(|object| serde_json::from_value(object.into())).map_err(|e| {
             let help = "like { \"size\": [256, 256], \"coarsest\": 8 }; there are size, spp, depth, integrator, shadows, coarsest, crop";
             Report::error(format!("these are no options of a picture: {e}")).help(help)
         })
@@ -69,7 +70,8 @@ impl Picture {
     /// Begins a picture.
     pub fn begin(compiled: &CompiledScene, asked: &Asked) -> Result<Self, Report> {
         let options = Options { crop: asked.crop, passes: asked.passes(), ..Options::default() };
-        enough_memory(compiled, &options, BYTES_PER_PIXEL + BYTES_OF_PASSES)?;
+        let of_passes = if options.passes == Passes::WholeTiles { 0 } else { BYTES_OF_PASSES };
+        enough_memory(compiled, &options, BYTES_PER_PIXEL + of_passes)?;
         let renderer = Renderer::new(compiled.shared_world(), compiled.settings(), &options).map_err(refused)?;
         Ok(Self::Rendered(Box::new(renderer)))
     }
@@ -173,7 +175,17 @@ fn enough_memory(compiled: &CompiledScene, options: &Options<'_>, bytes_per_pixe
     let Crop { width, height, .. } = options.crop_of(compiled.world()).map_err(refused)?;
     let needed = u64::from(width).saturating_mul(u64::from(height)).saturating_mul(bytes_per_pixel);
     memory::check(&format!("a picture of {width} x {height} pixels"), needed)
+        .or_else(|report| if is_there(needed) { Ok(()) } else { Err(report) })
         .map_err(|report| report.help("choose a smaller size, or render a part (crop)"))
+}
+
+/// Can so many bytes be had in one piece? What a picture before has given back does not count as free, and is there all the same.
+fn is_there(bytes: u64) -> bool {
+    let mut memory: Vec<u8> = Vec::new();
+    let is_there = usize::try_from(bytes).is_ok_and(|bytes| memory.try_reserve_exact(bytes).is_ok());
+    // Or the compiler would leave out memory that nobody uses.
+    std::hint::black_box(memory.as_ptr());
+    is_there
 }
 
 /// A part of the picture that has changed, in pixels of the whole one.

@@ -1,7 +1,7 @@
 //! What JavaScript holds: a scene, and its picture as far as it has come.
 
 use crate::findings::{json, thrown};
-use crate::picture::{Asked, Picture};
+use crate::picture::{Asked, Changed, Picture};
 use crate::ready::{Given, GivenScene, Ready};
 use js_sys::{Array, Uint8Array, try_iter};
 use serde_json::json;
@@ -64,8 +64,12 @@ impl Session {
 
     /// Changes one value of the scene, as `--set key=value` does. What was rendered is gone; what is refused leaves all as it was.
     pub fn edit(&mut self, key: &str, value: &str) -> Answer<()> {
-        let edits = with_edit(&self.edits, format!("{key}={value}"));
-        let changes = Changes { set: edits.clone(), ..self.changes.clone() };
+        let change = format!("{key}={value}");
+        // What was asked of the picture before must not hide a setting of the scene.
+        let is_setting = scene_file::keys(&change).first().is_some_and(|table| table == "render");
+        let asked = if is_setting { Changes::default() } else { self.changes.clone() };
+        let edits = with_edit(&self.edits, change);
+        let changes = Changes { set: edits.clone(), ..asked };
         let ready = self.prepared(&changes)?;
         self.take(changes, ready);
         (self.edits, self.picture) = (edits, None);
@@ -74,8 +78,7 @@ impl Session {
 
     /// Begins a picture. `options` are an object in JSON: `size`, `spp`, `depth`, `integrator`, `shadows`, as of a scene's `render`;
     /// `coarsest`, with which the first sample of every so many-th pixel comes first; and `crop`, a part of the picture by `x`, `y`,
-    /// `width`, `height`. What is left out is as the scene has it. What is refused leaves the scene as it was, and no
-    /// picture.
+    /// `width`, `height`. What is left out is as the scene has it. What is refused leaves the scene as it was.
     pub fn begin(&mut self, options: Option<String>) -> Answer<()> {
         self.begin_with(options, Picture::begin)
     }
@@ -90,7 +93,7 @@ impl Session {
     /// top, width, height, and how many pixels apart those are that were rendered.
     pub fn step(&mut self, milliseconds: f64) -> Vec<u32> {
         let changed = self.picture.as_mut().map(|picture| picture.step(milliseconds)).unwrap_or_default();
-        changed.iter().flat_map(|changed| changed.numbers()).collect()
+        changed.iter().flat_map(Changed::numbers).collect()
     }
 
     /// Puts a part, which another instance has rendered to its end, into a gathered picture.
@@ -326,7 +329,7 @@ fn read_files(files: &JsValue) -> Answer<InMemory> {
         return Ok(all);
     }
     let no_files = || thrown(&[Report::error("expected files as pairs of a name and bytes (Uint8Array)")]);
-    for pair in try_iter(files)?.ok_or_else(no_files)? {
+    for pair in try_iter(files).ok().flatten().ok_or_else(no_files)? {
         let pair: Array = pair?.dyn_into().map_err(|_| no_files())?;
         let name = pair.get(0).as_string().ok_or_else(no_files)?;
         let bytes: Uint8Array = pair.get(1).dyn_into().map_err(|_| no_files())?;
