@@ -22,7 +22,6 @@
 //!
 //! Whatever is refused is thrown as an `Error` with `findings`, a JSON text: a list of `message`, `help`, `code` and `place`.
 
-#![allow(unsafe_code, reason = "what wasm-bindgen makes of functions that JavaScript calls; there is none of our own")]
 #![allow(missing_debug_implementations, reason = "JavaScript shows them by its own classes")]
 #![allow(clippy::needless_pass_by_value, reason = "what JavaScript hands over comes by value")]
 

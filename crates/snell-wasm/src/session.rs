@@ -83,8 +83,8 @@ impl Session {
         self.begin_with(options, Picture::begin)
     }
 
-    /// Begins a picture that other instances render: it is [`put`](Self::put) together from their `values`. The options are those of
-    /// [`begin`](Self::begin).
+    /// Begins a picture that other instances render: it is put together from their `values`. The options are those of
+    /// `begin`.
     pub fn gather(&mut self, options: Option<String>) -> Answer<()> {
         self.begin_with(options, Picture::gather)
     }
