@@ -10,7 +10,8 @@ demo: ## Build Snell, render the default scene, say where the picture is
 	@scripts/demo.sh
 
 studio: ## Build what a page in a browser loads, in target/studio
-	@bash -c 'source scripts/lib.sh && build_studio'
+	cargo build --locked --quiet --package snell-wasm-bundle --profile ci
+	@bash -c 'source scripts/lib.sh && bundle_studio'
 
 test: ## Everything that CI runs
 	@scripts/test.sh

@@ -100,9 +100,8 @@ build_wasm() {
     cargo build --locked --quiet --package snell-wasm --package snell-wasm-test --target wasm32-unknown-unknown --profile ci
 }
 
-# What a page loads of Rust, in target/studio.
-build_studio() {
+# What a page loads of Rust, in target/studio. Needs snell-wasm-bundle, which the workspace builds, or cargo on its own.
+bundle_studio() {
     build_wasm
-    cargo build --locked --quiet --package snell-wasm-bundle --profile ci
     target/ci/snell-wasm-bundle target/wasm32-unknown-unknown/ci/snell_wasm.wasm target/studio
 }

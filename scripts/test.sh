@@ -55,7 +55,7 @@ same_bits_in_wasm() {
 }
 # As a page loads it; some lints depend on the size of a pointer.
 browser_module() {
-    build_studio
+    bundle_studio
     cargo clippy --locked --quiet --package snell-wasm --target wasm32-unknown-unknown --profile ci -- -D warnings
     SNELL=$PWD/target/ci/snell node --test tests/studio/
 }
