@@ -1,13 +1,17 @@
 # Everything goes through these. What they need is installed without asking; what cannot be is named.
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test soak fuzz bench bench-counts bench-peers schemas pictures notebooks clean
+.PHONY: help demo studio test soak fuzz bench bench-counts bench-peers schemas pictures notebooks clean
 
 help: ## This list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
 demo: ## Build Snell, render the default scene, say where the picture is
 	@scripts/demo.sh
+
+studio: ## Build what a page in a browser loads, in target/studio
+	cargo build --locked --quiet --package snell-wasm-bundle --profile ci
+	@bash -c 'source scripts/lib.sh && bundle_studio'
 
 test: ## Everything that CI runs
 	@scripts/test.sh

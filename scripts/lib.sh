@@ -94,3 +94,14 @@ need_node() {
     node --eval 'process.exit(parseInt(process.versions.node) < 20 ? 1 : 0)' 2>/dev/null ||
         missing 'Node 20 or newer' 'sudo apt-get install nodejs npm'
 }
+
+# What runs in a browser, and what its bits are tested with; together, as cargo then builds the library once for both.
+build_wasm() {
+    cargo build --locked --quiet --package snell-wasm --package snell-wasm-test --target wasm32-unknown-unknown --profile ci
+}
+
+# What a page loads of Rust, in target/studio. Needs snell-wasm-bundle, which the workspace builds, or cargo on its own.
+bundle_studio() {
+    build_wasm
+    target/ci/snell-wasm-bundle target/wasm32-unknown-unknown/ci/snell_wasm.wasm target/studio
+}

@@ -47,11 +47,17 @@ kernels_alone() {
     cargo build --locked --quiet --package snell-kernels --no-default-features --target wasm32-unknown-unknown --profile ci
 }
 same_bits_in_wasm() {
-    cargo build --locked --quiet --package snell-wasm-test --target wasm32-unknown-unknown --profile ci
+    build_wasm
     target/ci/snell-test-scenes >target/same-bits-native.txt
     node tests/wasm/run.mjs target/wasm32-unknown-unknown/ci/snell_wasm_test.wasm >target/same-bits-wasm.txt
     diff target/same-bits-native.txt target/same-bits-wasm.txt
     printf '%d films and statistics, the same bits\n' "$(wc -l <target/same-bits-wasm.txt)"
+}
+# As a page loads it; some lints depend on the size of a pointer.
+browser_module() {
+    bundle_studio
+    cargo clippy --locked --quiet --package snell-wasm --target wasm32-unknown-unknown --profile ci -- -D warnings
+    SNELL=$PWD/target/ci/snell node --test tests/studio/
 }
 
 viewer() {
@@ -74,6 +80,7 @@ stage 'fuzz targets compile' cargo check --locked --quiet --manifest-path fuzz/C
 stage 'the library for ARM' cargo check --locked --quiet --package snell --target aarch64-unknown-linux-gnu --profile ci
 stage 'the kernels without the standard library' kernels_alone
 stage 'the same bits in WASM' same_bits_in_wasm
+stage 'the module for browsers' browser_module
 
 printf '\n── all passed\n'
 printf '%s\n' "${times[@]}"

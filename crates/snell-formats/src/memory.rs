@@ -5,7 +5,7 @@ use std::path::{Component, Path};
 
 /// Bytes that can be had without swapping, and within the limits of this program and of its group; `None` where nobody says.
 pub fn free() -> Option<u64> {
-    [available(), within_address_space(), within_group()].into_iter().flatten().min()
+    [available(), within_address_space(), within_group(), within_instance()].into_iter().flatten().min()
 }
 
 /// Refuses what needs more than is free. `what` is what needs it.
@@ -38,6 +38,18 @@ fn available() -> Option<u64> {
 fn within_address_space() -> Option<u64> {
     let limit = number_of("/proc/self/limits", "Max address space")?;
     Some(limit.saturating_sub(number_of("/proc/self/status", "VmSize:")? * 1024))
+}
+
+/// WASM: what an instance may still grow by. What was given back within it may be had besides, in pieces of any size.
+#[cfg(target_family = "wasm")]
+fn within_instance() -> Option<u64> {
+    const PAGE: u64 = 1 << 16;
+    (1_u64 << 32).checked_sub(PAGE * core::arch::wasm32::memory_size(0) as u64)
+}
+
+#[cfg(not(target_family = "wasm"))]
+fn within_instance() -> Option<u64> {
+    None
 }
 
 /// Linux: what the limits of this process's group, and of those that it is within, leave.

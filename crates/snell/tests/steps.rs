@@ -3,11 +3,12 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use snell::film::{Crop, Film, Rgb};
-use snell::render::{Options, Passes, Renderer, Settings, render};
+use snell::render::{Options, Passes, Progress, Renderer, Settings, render};
 use snell::scene::{Integrator, Scene};
 use snell::trace::Statistics;
 use snell::world::World;
 use snell_test_scenes::lecture;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
 /// Glass that disperses, with light that is lost.
@@ -32,12 +33,12 @@ fn steps_from_coarse_to_fine_end_in_the_same_picture() {
     ] {
         let mut scene = lecture(name, 40);
         scene.render.spp = spp;
-        let (world, settings) = (World::new(&scene).unwrap(), Settings::from(&scene));
+        let (world, settings) = (Arc::new(World::new(&scene).unwrap()), Settings::from(&scene));
         let expected = render(&world, &settings, &Options { crop, ..Options::default() }).unwrap();
         for (coarsest, tiles, threads) in [(1, 1, 1), (8, 1, 1), (8, 3, 2), (64, 100, 2), (7, 2, 1)] {
             let passes = Passes::CoarseToFine { coarsest };
             let options = Options { crop, passes, tile_size: 8, threads, ..Options::default() };
-            let mut renderer = Renderer::new(&world, &settings, &options).unwrap();
+            let mut renderer = Renderer::new(Arc::clone(&world), settings.clone(), &options).unwrap();
             let mut before = renderer.film().clone();
             while !renderer.is_finished() {
                 let changed = renderer.step(tiles);
@@ -59,6 +60,8 @@ fn steps_from_coarse_to_fine_end_in_the_same_picture() {
             assert!(*renderer.film() == expected.film, "{name}, {passes:?}, {tiles} tiles a step");
             assert_eq!(renderer.statistics(), expected.statistics, "{name}, {passes:?}");
             assert!(renderer.step(1).is_empty());
+            let Progress { pixels, total_pixels, rays } = renderer.progress();
+            assert!(pixels == total_pixels && rays == expected.statistics.rays.total(), "{name}, {passes:?}");
         }
     }
 }
@@ -71,7 +74,7 @@ fn the_first_pass_already_fills_the_picture() {
     let (world, settings) = (World::new(&scene).unwrap(), Settings::from(&scene));
     let full = render(&world, &settings, &Options::default()).unwrap().film;
     let passes = Passes::CoarseToFine { coarsest: 8 };
-    let mut renderer = Renderer::new(&world, &settings, &Options { passes, ..Options::default() }).unwrap();
+    let mut renderer = Renderer::new(world, settings, &Options { passes, ..Options::default() }).unwrap();
     renderer.step(1);
     let film = renderer.film();
     assert_eq!(film.finished.iter().filter(|&&finished| finished).count(), 25);
@@ -85,7 +88,7 @@ fn the_first_pass_already_fills_the_picture() {
 fn what_was_cancelled_goes_on_to_the_same_picture_and_statistics() {
     let scene = glass(3);
     let (film, statistics) = whole(&scene);
-    let (world, settings) = (World::new(&scene).unwrap(), Settings::from(&scene));
+    let (world, settings) = (Arc::new(World::new(&scene).unwrap()), Settings::from(&scene));
     for passes in [Passes::WholeTiles, Passes::CoarseToFine { coarsest: 4 }] {
         let (cancel, calls) = (AtomicBool::new(false), AtomicU32::new(0));
         // Every second tile tells the others to stop, wherever they are.
@@ -102,7 +105,7 @@ fn what_was_cancelled_goes_on_to_the_same_picture_and_statistics() {
             cancel: Some(&cancel),
             ..Options::default()
         };
-        let mut renderer = Renderer::new(&world, &settings, &options).unwrap();
+        let mut renderer = Renderer::new(Arc::clone(&world), settings.clone(), &options).unwrap();
         let mut stops = 0;
         while !renderer.is_finished() {
             renderer.step(u64::MAX);

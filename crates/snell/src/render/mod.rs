@@ -170,7 +170,7 @@ pub fn render_into(
     options: &Options<'_>,
 ) -> Result<Statistics, RenderError> {
     let mut schedule = Schedule::new(film, world, settings, options)?;
-    schedule.step(film, u64::MAX);
+    schedule.step(film, world, settings, u64::MAX);
     if options.cancel.is_some_and(|c| c.load(Ordering::Relaxed)) {
         film.blacken_unfinished();
     }

@@ -14,7 +14,7 @@ use crate::world::World;
 use std::collections::VecDeque;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// A render that goes on step by step, and may be paused or dropped between any two of them.
 ///
@@ -26,9 +26,8 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 /// use snell::render::{Options, Passes, Renderer, Settings};
 ///
 /// let world = snell::world::World::new(&scene)?;
-/// let settings = Settings::from(&scene);
 /// let options = Options { passes: Passes::CoarseToFine { coarsest: 8 }, ..Options::default() };
-/// let mut renderer = Renderer::new(&world, &settings, &options)?;
+/// let mut renderer = Renderer::new(world, Settings::from(&scene), &options)?;
 /// while !renderer.is_finished() {
 ///     // One tile, here on the caller's thread; `renderer.film()` may be shown after each.
 ///     let changed = renderer.step(1);
@@ -38,8 +37,13 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 /// # Ok(())
 /// # }
 /// ```
+///
+/// It holds its world, and borrows nothing but what the options name: whoever shows a picture while it comes, as a browser does, keeps
+/// both in one place.
 #[derive(Debug)]
 pub struct Renderer<'a> {
+    world: Arc<World>,
+    settings: Settings,
     film: Film,
     schedule: Schedule<'a>,
 }
@@ -49,16 +53,17 @@ impl<'a> Renderer<'a> {
     ///
     /// # Errors
     /// When the film does not fit into memory, the crop not into the picture, or the world not to the model of light.
-    pub fn new(world: &'a World, settings: &'a Settings, options: &Options<'a>) -> Result<Self, RenderError> {
+    pub fn new(world: impl Into<Arc<World>>, settings: Settings, options: &Options<'a>) -> Result<Self, RenderError> {
+        let world = world.into();
         let mut film = Film::new(world.camera.size, Crop { x: 0, y: 0, width: 0, height: 0 })?;
-        let schedule = Schedule::new(&mut film, world, settings, options)?;
-        Ok(Self { film, schedule })
+        let schedule = Schedule::new(&mut film, &world, &settings, options)?;
+        Ok(Self { world, settings, film, schedule })
     }
 
     /// Renders so many tiles more, or all that are left. Returns those that have changed in the film: with coarse tiles the squares
     /// of [`Tile::step`] pixels around their pixels, too.
     pub fn step(&mut self, tiles: u64) -> Vec<Tile> {
-        self.schedule.step(&mut self.film, tiles)
+        self.schedule.step(&mut self.film, &self.world, &self.settings, tiles)
     }
 
     /// Is everything rendered?
@@ -76,6 +81,11 @@ impl<'a> Renderer<'a> {
         self.schedule.statistics()
     }
 
+    /// How far it has come.
+    pub fn progress(&self) -> Progress {
+        self.schedule.progress()
+    }
+
     /// The picture, and what was traced for it.
     pub fn into_film(self) -> (Film, Statistics) {
         let statistics = self.schedule.statistics();
@@ -83,13 +93,13 @@ impl<'a> Renderer<'a> {
     }
 }
 
-/// What is still to be rendered into a film.
+/// What is still to be rendered into a film; each step is told the world and the settings again, which must be the same.
 #[derive(Debug)]
 pub(super) struct Schedule<'a> {
-    world: &'a World,
-    settings: &'a Settings,
     options: Options<'a>,
     crop: Crop,
+    /// Samples per pixel.
+    spp: u32,
     /// The one that is under way comes first.
     passes: VecDeque<Pass>,
     /// How many tiles of it have been taken, and those that were taken and not finished.
@@ -174,12 +184,18 @@ fn passes(crop: &Crop, spp: u32, kind: Passes) -> VecDeque<Pass> {
     passes
 }
 
+/// How far a picture is that has so many samples of all its pixels, and took so many rays.
+fn progress(crop: &Crop, spp: u32, samples: u64, rays: u64) -> Progress {
+    let total_pixels = u64::from(crop.width) * u64::from(crop.height);
+    Progress { pixels: samples / u64::from(spp), total_pixels, rays }
+}
+
 impl<'a> Schedule<'a> {
     /// Makes the film ready, and plans what to render into it.
     pub fn new(
         film: &mut Film,
-        world: &'a World,
-        settings: &'a Settings,
+        world: &World,
+        settings: &Settings,
         options: &Options<'a>,
     ) -> Result<Self, RenderError> {
         if !world.is_for(settings.integrator) {
@@ -192,10 +208,9 @@ impl<'a> Schedule<'a> {
         let in_one = passes.iter().filter(|pass| pass.completes).count() == 1;
         let options = Options { tile_size: options.tile_size.clamp(1, 1 << 15), ..*options };
         Ok(Self {
-            world,
-            settings,
             options,
             crop,
+            spp: settings.spp,
             passes,
             taken: 0,
             again: Vec::new(),
@@ -218,18 +233,16 @@ impl<'a> Schedule<'a> {
         all
     }
 
-    /// Samples of all pixels.
-    fn total(&self) -> u64 {
-        let [width, height] = [self.crop.width, self.crop.height].map(u64::from);
-        width * height * u64::from(self.settings.spp)
+    pub fn progress(&self) -> Progress {
+        progress(&self.crop, self.spp, self.samples, self.rays)
     }
 
     /// Renders so many tiles more, or all that are left, and returns those that have changed.
-    pub fn step(&mut self, film: &mut Film, tiles: u64) -> Vec<Tile> {
+    pub fn step(&mut self, film: &mut Film, world: &World, settings: &Settings, tiles: u64) -> Vec<Tile> {
         let mut changed = Vec::new();
         while (changed.len() as u64) < tiles && !self.is_finished() && !self.is_cancelled() {
             let wanted = tiles - changed.len() as u64;
-            changed.append(&mut self.step_of_pass(film, wanted));
+            changed.append(&mut self.step_of_pass(film, world, settings, wanted));
         }
         changed
     }
@@ -239,10 +252,9 @@ impl<'a> Schedule<'a> {
     }
 
     /// The same within the pass that is under way.
-    fn step_of_pass(&mut self, film: &mut Film, tiles: u64) -> Vec<Tile> {
+    fn step_of_pass(&mut self, film: &mut Film, world: &World, settings: &Settings, tiles: u64) -> Vec<Tile> {
         let Some(pass) = self.passes.front().cloned() else { return Vec::new() };
         let (count, size) = (self.crop.width as usize * self.crop.height as usize, self.options.tile_size);
-        let total = self.total();
         if self.accumulator.is_some() && self.planes.is_empty() {
             let blocks = Block::of(pass.samples.clone());
             self.planes = blocks.into_iter().map(|block| (block, vec![Rgb::black(); count])).collect();
@@ -267,12 +279,11 @@ impl<'a> Schedule<'a> {
         });
         let shared = Shared {
             schedule: SharedSchedule {
-                world: self.world,
-                settings: self.settings,
+                world,
+                settings,
                 options: &self.options,
                 crop: self.crop,
                 accumulator: self.accumulator.as_ref(),
-                total,
                 before: [self.samples, self.rays],
             },
             bands: bands.collect(),
@@ -283,7 +294,7 @@ impl<'a> Schedule<'a> {
             done: [AtomicU64::new(0), AtomicU64::new(0)],
             result: Mutex::new(Finished::default()),
         };
-        with_integrator(self.settings.integrator, Work(&shared));
+        with_integrator(settings.integrator, Work(&shared));
         // A poisoned lock means that a worker panicked, which rayon has already passed on.
         let Finished { tiles, statistics, turns: mut finished } =
             shared.result.into_inner().unwrap_or_else(PoisonError::into_inner);
@@ -321,20 +332,19 @@ struct Band<'a> {
 }
 
 /// What does not change during a step.
-struct SharedSchedule<'b, 'a> {
-    world: &'a World,
-    settings: &'a Settings,
-    options: &'b Options<'a>,
+struct SharedSchedule<'b> {
+    world: &'b World,
+    settings: &'b Settings,
+    options: &'b Options<'b>,
     crop: Crop,
     accumulator: Option<&'b Accumulator>,
-    /// Samples in all, and samples and rays before this step.
-    total: u64,
+    /// Samples and rays before this step.
     before: [u64; 2],
 }
 
 /// What workers share during a step.
-struct Shared<'b, 'a> {
-    schedule: SharedSchedule<'b, 'a>,
+struct Shared<'b> {
+    schedule: SharedSchedule<'b>,
     /// From top to bottom.
     bands: Vec<Mutex<Band<'b>>>,
     pass: &'b Pass,
@@ -357,9 +367,9 @@ struct Finished {
 }
 
 /// Starts the workers.
-struct Work<'c, 'b, 'a>(&'c Shared<'b, 'a>);
+struct Work<'c, 'b>(&'c Shared<'b>);
 
-impl WithIntegrator for Work<'_, '_, '_> {
+impl WithIntegrator for Work<'_, '_> {
     type Output = ();
     fn run<I: Integrator>(self) {
         let Self(shared) = self;
@@ -371,9 +381,9 @@ impl WithIntegrator for Work<'_, '_, '_> {
 }
 
 /// What one thread does.
-struct Worker<'c, 'b, 'a, I>(&'c Shared<'b, 'a>, std::marker::PhantomData<I>);
+struct Worker<'c, 'b, I>(&'c Shared<'b>, std::marker::PhantomData<I>);
 
-impl<I: Integrator> Kernel for Worker<'_, '_, '_, I> {
+impl<I: Integrator> Kernel for Worker<'_, '_, I> {
     type Output = ();
     #[inline(always)]
     fn run<L: Lanes>(self) {
@@ -401,7 +411,7 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-impl Shared<'_, '_> {
+impl Shared<'_> {
     /// The next tile, its turn and its band, if there is one and nobody has cancelled.
     fn take_tile(&self) -> Option<(u64, usize, Tile)> {
         let turn = *self.turns.get(self.next.fetch_add(1, Ordering::Relaxed) as usize)?;
@@ -482,13 +492,11 @@ impl Shared<'_, '_> {
 
     fn report(&self, samples: u64, rays: u64) {
         let [done_samples, done_rays] = &self.done;
-        let SharedSchedule { options, crop, total, before, .. } = &self.schedule;
+        let SharedSchedule { settings, options, crop, before, .. } = &self.schedule;
         let samples = before[0] + done_samples.fetch_add(samples, Ordering::Relaxed) + samples;
         let rays = before[1] + done_rays.fetch_add(rays, Ordering::Relaxed) + rays;
-        if let Some(progress) = options.progress {
-            let total_pixels = u64::from(crop.width) * u64::from(crop.height);
-            let pixels = samples / (total / total_pixels);
-            progress(Progress { pixels, total_pixels, rays });
+        if let Some(tell) = options.progress {
+            tell(progress(crop, settings.spp, samples, rays));
         }
     }
 }

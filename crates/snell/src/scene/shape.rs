@@ -95,7 +95,7 @@ pub enum OpenMesh {
     Opaque,
 }
 
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "the signature that serde asks for")]
+#[allow(clippy::trivially_copy_pass_by_ref, reason = "the signature of serde; what is small depends on the machine")]
 pub(super) fn is_zero(value: &f64) -> bool {
     *value == 0.0
 }

@@ -34,7 +34,7 @@ pub struct Sky {
     pub pixels: Option<Arc<Image>>,
 }
 
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "the signature that serde asks for")]
+#[allow(clippy::trivially_copy_pass_by_ref, reason = "the signature of serde; what is small depends on the machine")]
 fn is_one(value: &f64) -> bool {
     *value == 1.0
 }

@@ -30,7 +30,7 @@ const OUTSIDE: &str = "outside";
 pub struct CompiledScene {
     name: String,
     scene: Arc<Scene>,
-    world: World,
+    world: Arc<World>,
 }
 
 impl CompiledScene {
@@ -54,7 +54,7 @@ impl CompiledScene {
     ) -> Result<Self, Problems> {
         let scene = scene.into();
         let world = World::build(&scene, quality, threads)?;
-        Ok(Self { name: name.into(), scene, world })
+        Ok(Self { name: name.into(), scene, world: world.into() })
     }
 
     /// Compiles a scene that differs from this one, and shares geometry and tree where [it can](World::edited).
@@ -64,7 +64,7 @@ impl CompiledScene {
     pub fn edited(&self, scene: impl Into<Arc<Scene>>) -> Result<Self, Problems> {
         let scene = scene.into();
         let world = self.world.edited(&self.scene, &scene)?;
-        Ok(Self { name: self.name.clone(), scene, world })
+        Ok(Self { name: self.name.clone(), scene, world: world.into() })
     }
 
     /// What explanations call it.
@@ -80,6 +80,11 @@ impl CompiledScene {
     /// What it was compiled to.
     pub fn world(&self) -> &World {
         &self.world
+    }
+
+    /// The same, for whoever keeps it longer, as a [`Renderer`](crate::render::Renderer) does.
+    pub fn shared_world(&self) -> Arc<World> {
+        Arc::clone(&self.world)
     }
 
     /// The settings that the scene asks for.

@@ -1,0 +1,211 @@
+//! A picture that comes tile by tile, rendered here or gathered from others.
+
+use crate::page::now;
+use serde::Deserialize;
+use snell::film::{BYTES_PER_PIXEL, Crop, Film, Rgb};
+use snell::render::{Options, Passes, Progress, RenderError, Renderer};
+use snell::scene::{Integrator, Shadows, Warning};
+use snell::trace::Tile;
+use snell::world::CompiledScene;
+use snell_formats::recipe::Changes;
+use snell_formats::{Report, memory};
+
+/// How a picture is asked for: what is left out is as the scene has it.
+#[derive(Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Asked {
+    size: Option<[u32; 2]>,
+    spp: Option<u32>,
+    depth: Option<u32>,
+    integrator: Option<Integrator>,
+    shadows: Option<Shadows>,
+    /// The first sample of every so many-th pixel comes first; left out, each tile comes with all of its samples.
+    coarsest: Option<u32>,
+    crop: Option<Crop>,
+}
+
+impl Asked {
+    /// Reads options.
+    pub fn parse(options: Option<&str>) -> Result<Self, Report> {
+        let Some(options) = options else { return Ok(Self::default()) };
+        // As an object alone: serde would take a list for its values.
+        let object: serde_json::Result<serde_json::Map<_, _>> = serde_json::from_str(options);
+        object.and_then(|object| serde_json::from_value(object.into())).map_err(|e| {
+            let help = "like { \"size\": [256, 256], \"coarsest\": 8 }; there are size, spp, depth, integrator, shadows, coarsest, crop";
+            Report::error(format!("these are no options of a picture: {e}")).help(help)
+        })
+    }
+
+    /// What makes it another picture than that of the scene with these edits.
+    pub fn changes(&self, edits: &[String]) -> Changes {
+        Changes {
+            set: edits.to_vec(),
+            size: self.size,
+            crop: self.crop,
+            spp: self.spp,
+            depth: self.depth,
+            integrator: self.integrator,
+            shadows: self.shadows,
+            ..Changes::default()
+        }
+    }
+
+    fn passes(&self) -> Passes {
+        self.coarsest.map_or(Passes::WholeTiles, |coarsest| Passes::CoarseToFine { coarsest })
+    }
+}
+
+/// A picture, or the part of it that there is.
+pub enum Picture {
+    /// It is rendered here.
+    Rendered(Box<Renderer<'static>>),
+    /// Others render it.
+    Gathered(Film),
+}
+
+/// Sums of samples, and the light that was lost: at most so many bytes for each pixel, while passes refine it.
+const BYTES_OF_PASSES: u64 = 2 * (size_of::<Rgb>() as u64 + 8) + 2 * size_of::<Rgb>() as u64;
+
+impl Picture {
+    /// Begins a picture.
+    pub fn begin(compiled: &CompiledScene, asked: &Asked) -> Result<Self, Report> {
+        let options = Options { crop: asked.crop, passes: asked.passes(), ..Options::default() };
+        let of_passes = if options.passes == Passes::WholeTiles { 0 } else { BYTES_OF_PASSES };
+        enough_memory(compiled, &options, BYTES_PER_PIXEL + of_passes)?;
+        let renderer = Renderer::new(compiled.shared_world(), compiled.settings(), &options).map_err(refused)?;
+        Ok(Self::Rendered(Box::new(renderer)))
+    }
+
+    /// Begins one that others render.
+    pub fn gather(compiled: &CompiledScene, asked: &Asked) -> Result<Self, Report> {
+        let options = Options { crop: asked.crop, ..Options::default() };
+        enough_memory(compiled, &options, BYTES_PER_PIXEL)?;
+        let crop = options.crop_of(compiled.world()).map_err(refused)?;
+        Film::new(compiled.world().camera.size, crop).map(Self::Gathered).map_err(|error| refused(error.into()))
+    }
+
+    pub fn film(&self) -> &Film {
+        match self {
+            Self::Rendered(renderer) => renderer.film(),
+            Self::Gathered(film) => film,
+        }
+    }
+
+    pub fn is_finished(&self) -> bool {
+        match self {
+            Self::Rendered(renderer) => renderer.is_finished(),
+            Self::Gathered(film) => film.is_finished(),
+        }
+    }
+
+    /// How far it is. Of what others have rendered only pixels are known.
+    pub fn progress(&self) -> Progress {
+        match self {
+            Self::Rendered(renderer) => renderer.progress(),
+            Self::Gathered(film) => Progress {
+                pixels: film.finished.iter().filter(|finished| **finished).count() as u64,
+                total_pixels: film.finished.len() as u64,
+                rays: 0,
+            },
+        }
+    }
+
+    /// What is odd about what was rendered.
+    pub fn warnings(&self, compiled: &CompiledScene) -> Vec<Warning> {
+        match self {
+            Self::Rendered(renderer) => {
+                snell::render::warnings(&renderer.statistics(), compiled.world(), &compiled.settings())
+            }
+            Self::Gathered(_) => Vec::new(),
+        }
+    }
+
+    /// Renders tile after tile until the time is over, at least one. Returns which parts of the picture have changed.
+    pub fn step(&mut self, milliseconds: f64) -> Vec<Changed> {
+        let Self::Rendered(renderer) = self else { return Vec::new() };
+        let (start, mut changed) = (now(), Vec::new());
+        loop {
+            let tiles = renderer.step(1);
+            let crop = renderer.film().crop;
+            changed.extend(tiles.iter().map(|tile| Changed::of(tile, &crop)));
+            let is_over = now() - start >= milliseconds || milliseconds.is_nan();
+            if is_over || renderer.is_finished() {
+                return changed;
+            }
+        }
+    }
+
+    /// Takes what another instance has rendered of a gathered picture.
+    pub fn put(&mut self, part: Crop, values: &[f64]) -> Result<(), Report> {
+        let Self::Gathered(film) = self else {
+            return Err(Report::error("this picture is rendered here, and takes no parts from elsewhere"));
+        };
+        let whole = film.crop;
+        if values.len() as u64 != 3 * u64::from(part.width) * u64::from(part.height) || !is_within(part, whole) {
+            let Crop { x, y, width, height } = part;
+            let message =
+                format!("{} numbers for {width} x {height} pixels at {x},{y} are no part of the picture", values.len());
+            return Err(Report::error(message));
+        }
+        let mut colors = values.chunks_exact(3).map(|color| Rgb::new(color[0], color[1], color[2]));
+        for row in part.y - whole.y..part.y - whole.y + part.height {
+            let start = row as usize * film.width() + (part.x - whole.x) as usize;
+            let range = start..start + part.width as usize;
+            film.finished[range.clone()].fill(true);
+            film.pixels[range].iter_mut().zip(&mut colors).for_each(|(pixel, color)| *pixel = color);
+        }
+        Ok(())
+    }
+}
+
+/// Does a rectangle, which is not empty, lie within another?
+fn is_within(part: Crop, whole: Crop) -> bool {
+    let along = |start: u32, length: u32, first: u32, have: u32| {
+        length > 0 && start >= first && start.checked_add(length).is_some_and(|end| end <= first + have)
+    };
+    along(part.x, part.width, whole.x, whole.width) && along(part.y, part.height, whole.y, whole.height)
+}
+
+fn refused(error: RenderError) -> Report {
+    Report::error(error.to_string())
+}
+
+/// Refuses what would not fit into the 4 GiB of an instance: where memory cannot be had, it traps.
+fn enough_memory(compiled: &CompiledScene, options: &Options<'_>, bytes_per_pixel: u64) -> Result<(), Report> {
+    let Crop { width, height, .. } = options.crop_of(compiled.world()).map_err(refused)?;
+    let needed = u64::from(width).saturating_mul(u64::from(height)).saturating_mul(bytes_per_pixel);
+    memory::check(&format!("a picture of {width} x {height} pixels"), needed)
+        .or_else(|report| if is_there(needed) { Ok(()) } else { Err(report) })
+        .map_err(|report| report.help("choose a smaller size, or render a part (crop)"))
+}
+
+/// Can so many bytes be had in one piece? What a picture before has given back does not count as free, and is there all the same.
+fn is_there(bytes: u64) -> bool {
+    let mut memory: Vec<u8> = Vec::new();
+    let is_there = usize::try_from(bytes).is_ok_and(|bytes| memory.try_reserve_exact(bytes).is_ok());
+    // Or the compiler would leave out memory that nobody uses.
+    std::hint::black_box(memory.as_ptr());
+    is_there
+}
+
+/// A part of the picture that has changed, in pixels of the whole one.
+pub struct Changed {
+    rect: Crop,
+    /// How far the pixels are apart that were rendered; those between look like them for now.
+    step: u32,
+}
+
+impl Changed {
+    fn of(tile: &Tile, crop: &Crop) -> Self {
+        let length = |start: u32, count: u32, end: u32| count.saturating_mul(tile.step).min(end - start);
+        let width = length(tile.x, tile.width, crop.x + crop.width);
+        let height = length(tile.y, tile.height, crop.y + crop.height);
+        Self { rect: Crop { x: tile.x, y: tile.y, width, height }, step: tile.step }
+    }
+
+    /// Left, top, width, height, step.
+    pub fn numbers(&self) -> [u32; 5] {
+        let Self { rect: Crop { x, y, width, height }, step } = *self;
+        [x, y, width, height, step]
+    }
+}
