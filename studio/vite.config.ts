@@ -1,0 +1,27 @@
+import { fileURLToPath } from 'node:url';
+import { defineConfig } from 'vitest/config';
+
+const path = (relative: string) => fileURLToPath(new URL(relative, import.meta.url));
+
+export default defineConfig({
+  // Relative: the folder may lie below any path of any host.
+  base: './',
+  publicDir: false,
+  resolve: {
+    alias: {
+      'snell-viewer': path('../viewer/src/index.ts'),
+      'snell-wasm': path('../target/studio/snell_wasm.js'),
+    },
+  },
+  esbuild: { jsx: 'automatic', jsxImportSource: 'preact', legalComments: 'eof' },
+  worker: { format: 'es' },
+  server: { fs: { allow: ['..'] } },
+  build: {
+    outDir: path('../target/studio-dist'),
+    emptyOutDir: true,
+    target: 'es2022',
+    // The module is loaded while the page starts, not as text in it.
+    assetsInlineLimit: 0,
+  },
+  test: { include: ['src/**/*.test.ts'] },
+});
