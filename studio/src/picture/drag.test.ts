@@ -16,7 +16,7 @@ test('a point on the axis is in the middle, and what is behind the eye is nowher
 
 test('what is dragged stays under the pointer', () => {
   // A skewed camera: nothing of it is along an axis.
-  const skewed: ViewCamera = { eye: [3, -2, 7], up: [0, 1, 0], corners: [[1, 0, 1], [2, 0.5, 1.5], [1, 2, 1], [2, 2.5, 1.5]] };
+  const skewed: ViewCamera = { eye: [3, -2, 7], up: [0, 1, 0], corners: [[1, 0, 1], [2, 0, 1.5], [1, 2, 1], [2, 2, 1.5]] };
   const sizes = [[400, 300], [7, 1000]] as const;
   for (const camera of [skewed])
     for (const size of sizes) {
