@@ -24,6 +24,13 @@ export interface Progress {
   time: number;
 }
 
+/** Another picture under the one that is shown, for a slider to lay open: with other options, or as it was. */
+export interface Comparison {
+  label: string;
+  surface: Surface;
+  options: PictureOptions | null;
+}
+
 /** How an edit stands in the history. */
 export interface EditOptions {
   label: string;
@@ -60,6 +67,7 @@ export class Store {
   readonly handles = signal<'move' | 'turn' | 'scale'>('move');
   readonly snap = signal<number | null>(null);
   readonly sighting = signal<(Sighting & { object: string }) | null>(null);
+  readonly comparison = signal<Comparison | null>(null);
   readonly undoLabel = signal<string | null>(null);
   readonly redoLabel = signal<string | null>(null);
 
@@ -69,6 +77,8 @@ export class Store {
   readonly asked = computed(() => this.pinned.value ?? this.hovered.value);
 
   readonly surface = new Surface();
+  /** Where what is rendered goes. */
+  private target = this.surface;
   readonly engine: Engine;
   private readonly history = new History<Base>();
   private readonly steps: Step[] = [];
@@ -81,15 +91,18 @@ export class Store {
     this.engine = new Engine(
       {
         patches: (patches, covered) => {
-          if (this.surface.put(patches, covered)) this.frame.value++;
+          if (this.target.put(patches, covered)) this.frame.value++;
           if (covered) this.covered?.();
         },
         progress: (pixels, rays) => {
+          if (this.target !== this.surface) return;
           const [width, height] = this.revision.value!.size;
           this.progress.value = { pixels, rays, total: width * height, time: performance.now() - this.begun };
         },
         finished: (outcome) => {
+          if (this.target !== this.surface) return;
           this.outcome.value = outcome;
+          this.renderComparison();
         },
         broken: (message) => void this.recover(message),
       },
@@ -147,14 +160,36 @@ export class Store {
   }
 
   /** Renders the picture that is shown from the start. */
-  render(options: PictureOptions = {}): void {
+  render(): void {
     const { revision } = this;
     if (revision.value === null) return;
-    this.surface.begin(...(options.size ?? revision.value.size));
+    this.target = this.surface;
+    this.surface.begin(...revision.value.size);
     this.outcome.value = null;
     this.stopped.value = false;
     this.begun = performance.now();
-    this.engine.render(options);
+    this.engine.render();
+  }
+
+  /** Lays the picture beside itself with other options, beside itself as it is now, or beside nothing. */
+  compare(label: string | null, options: PictureOptions | null = null): void {
+    if (label === null) {
+      this.comparison.value = null;
+      if (this.target !== this.surface) this.render();
+      return;
+    }
+    const surface = new Surface();
+    if (options === null) surface.copy(this.surface);
+    this.comparison.value = { label, surface, options };
+    if (this.outcome.value !== null) this.renderComparison();
+  }
+
+  private renderComparison(): void {
+    const { value: comparison } = this.comparison;
+    if (comparison?.options == null) return;
+    this.target = comparison.surface;
+    comparison.surface.begin(...this.revision.value!.size);
+    this.engine.render(comparison.options);
   }
 
   /** Why a pixel has its colour: pinned, until another one is or none. */

@@ -24,6 +24,12 @@ export class Surface {
     return this.covered;
   }
 
+  /** Becomes like another one. */
+  copy({ canvas }: Surface): void {
+    Object.assign(this.canvas, { width: canvas.width, height: canvas.height });
+    this.shown.drawImage(canvas, 0, 0);
+  }
+
   private swap(): void {
     const { canvas } = this.next;
     const { width, height } = canvas;

@@ -5,6 +5,7 @@ import { useSignal, useSignalEffect } from '@preact/signals';
 import { placeOf, roundTo, type Vec3 } from '../scene/objects';
 import { editsFor } from '../scene/movement';
 import type { Pixel, Store } from '../store';
+import { ComparisonSlider } from './comparison';
 import { dragged } from './drag';
 import { Overlay } from './overlay';
 import { fit, panBy, pixelAt, type Zoom, zoomAbout } from './zoom';
@@ -184,6 +185,7 @@ export function PictureView({ store }: { store: Store }) {
       onPointerLeave={() => pointers.current.size === 0 && store.hover(null)}
       onKeyDown={key}
     >
+      {store.comparison.value && <ComparisonSlider store={store} comparison={store.comparison.value} zoom={zoom} />}
       <ZoomButtons
         zoom={zoom.value.scale}
         fit={() => {
