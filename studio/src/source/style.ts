@@ -19,7 +19,9 @@ const MONOSPACE = "ui-monospace, 'SF Mono', Menlo, Consolas, 'DejaVu Sans Mono',
 
 const layout = EditorView.theme({
   '&': { height: '100%', backgroundColor: 'var(--paper)', color: 'var(--ink)', fontSize: '0.8125rem' },
-  '&.cm-focused': { outline: '2px solid var(--accent)', outlineOffset: '-2px' },
+  '&.cm-focused': { outline: 'none' },
+  // Above the gutters, which have a colour of their own.
+  '&.cm-focused::after': { content: '""', position: 'absolute', inset: '0', zIndex: '300', border: '2px solid var(--accent)', pointerEvents: 'none' },
   '.cm-scroller': { fontFamily: MONOSPACE, lineHeight: '1.55' },
   '.cm-content': { caretColor: 'var(--ink)' },
   '.cm-cursor': { borderLeftColor: 'var(--ink)' },
@@ -33,7 +35,7 @@ const layout = EditorView.theme({
   '.cm-foldPlaceholder': { backgroundColor: 'var(--tint)', border: '1px solid var(--line)', color: 'var(--quiet)' },
   '.cm-panels, .cm-tooltip': { backgroundColor: 'var(--paper)', color: 'var(--ink)', borderColor: 'var(--line)' },
   '.cm-panels.cm-panels-top': { borderBottomColor: 'var(--line)' },
-  '.cm-tooltip': { borderRadius: '0.4rem', boxShadow: '0 4px 16px rgb(0 0 0 / 0.18)', overflow: 'hidden' },
+  '.cm-tooltip': { borderRadius: '0.4rem', boxShadow: '0 4px 16px rgb(0 0 0 / 0.18)' },
   '.cm-tooltip p': { margin: '0', maxWidth: '28rem', whiteSpace: 'pre-wrap' },
   '.cm-tooltip code': { fontFamily: MONOSPACE, fontSize: '0.95em' },
   '.cm-explanation, .cm-tooltip .cm-completionInfo': { padding: '0.4rem 0.6rem', fontFamily: 'system-ui, sans-serif' },
