@@ -10,7 +10,7 @@ import {
   drawSelection, EditorView, highlightActiveLine, highlightActiveLineGutter, hoverTooltip, keymap, lineNumbers, type Tooltip,
 } from '@codemirror/view';
 import { type KnownNames, type Suggestion, suggestionsAt } from './complete';
-import type { Finding } from './finding';
+import type { Finding } from '../engine/protocol';
 import { type Lines, linesOf, minimalChange, offsetOf, withLines } from './lines';
 import { entryAt } from './schema';
 import { style, toml } from './style';
