@@ -63,6 +63,10 @@ async function showModel(store: Store, { model, files }: { model: string; files:
   store.edit(editsFor(place.center, place.radius, low), { label: 'look at the model' });
 }
 
+function shown(dialog: HTMLDialogElement | null): void {
+  if (dialog && !dialog.open) dialog.showModal();
+}
+
 export function DropZone({ files, children }: { files: Files; children: ComponentChildren }) {
   const over = useSignal(false);
   const depth = useRef(0);
@@ -90,7 +94,7 @@ export function DropZone({ files, children }: { files: Files; children: Componen
       {children}
       {over.value && <div class="drop-here">Drop a scene with its models and textures, or a folder</div>}
       {files.candidates.length > 0 && (
-        <dialog ref={(dialog) => dialog && !dialog.open && dialog.showModal()} class="choose" aria-labelledby="choose" onClose={() => files.choose(null)}>
+        <dialog ref={shown} class="choose" aria-labelledby="choose" onClose={() => files.choose(null)}>
           <h2 id="choose">Which of them is the scene?</h2>
           <ul>
             {files.candidates.map((name) => (
