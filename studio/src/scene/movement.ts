@@ -1,16 +1,11 @@
 /** Moving, turning and scaling an object, as edits of the scene's text. */
 
+import type { Change } from 'snell-viewer';
 import type { Edit } from '../engine/protocol';
 import { numberText, type SceneObject, type Vec3, vectorText } from './objects';
 
-/** Relative to where the object was; about its middle. */
-export type Movement =
-  | { kind: 'move'; by: Vec3 }
-  | { kind: 'turn'; axis: Vec3; degrees: number }
-  | { kind: 'scale'; by: number | Vec3 };
-
 /** `center` is the middle of the object before the movement. Nothing for what cannot be done to it. */
-export function editsFor(object: SceneObject, movement: Movement, center: Vec3): Edit[] {
+export function editsFor(object: SceneObject, movement: Change, center: Vec3): Edit[] {
   switch (movement.kind) {
     case 'move':
       return move(object, movement.by);

@@ -1,13 +1,11 @@
 /** The scene in 3D: turn it, look through the camera or from a light, move things, and see the rays of a pixel. */
 
 import { effect, untracked } from '@preact/signals';
-import { mount, type ObjectRef, TreePanel, type Viewer } from 'snell-viewer';
-import { useEffect, useRef } from 'preact/hooks';
+import { type Change, mount, type Movement, type ObjectRef, TreePanel, type Viewer } from 'snell-viewer';
+import { useEffect, useRef, useState } from 'preact/hooks';
 import type { Store } from '../store';
 import { editsFor } from './movement';
 import { objectsOf, placeOf, roundTo, type SceneObject, type Vec3 } from './objects';
-
-export type Handles = 'move' | 'turn' | 'scale';
 
 /** The drawing of the studio, which the panel beside it takes part in. */
 export class Space {
@@ -71,7 +69,7 @@ export class Space {
     return found('sphere', view.spheres) ?? found('mesh', view.meshes);
   }
 
-  private move(movement: Parameters<Parameters<Viewer['on']>[1]>[0] & { object: ObjectRef }): void {
+  private move(movement: Movement): void {
     const { store } = this;
     if (this.drag?.object.name !== movement.object.name) {
       const { scene, view } = store.revision.value!;
@@ -81,8 +79,7 @@ export class Space {
       this.drag = { object, ...place, group: `space ${object.key} ${performance.now()}` };
     }
     const { object, center, radius, group } = this.drag;
-    const rounded = movement.kind === 'move' ? { ...movement, by: movement.by.map((value: number) => roundTo(value, radius || length(center))) as Vec3 } : movement;
-    store.edit(editsFor(object, rounded, center), { label: `${movement.kind} ${object.name}`, group });
+    store.edit(editsFor(object, rounded(movement, radius || Math.hypot(...center)), center), { label: `${movement.kind} ${object.name}`, group });
   }
 
   private moved(): void {
@@ -91,21 +88,88 @@ export class Space {
   }
 }
 
-function length(vector: Vec3): number {
-  return Math.hypot(...vector);
+/** What a hand aims at has few digits. */
+function rounded(change: Change, extent: number): Change {
+  switch (change.kind) {
+    case 'move':
+      return { ...change, by: change.by.map((value) => roundTo(value, extent)) as Vec3 };
+    case 'turn':
+      return { ...change, degrees: roundTo(change.degrees, 360) };
+    case 'scale':
+      return { ...change, by: typeof change.by === 'number' ? roundTo(change.by, 1) : (change.by.map((value) => roundTo(value, 1)) as Vec3) };
+  }
 }
 
 export function SpaceView({ store, onSpace }: { store: Store; onSpace(space: Space | null): void }) {
   const place = useRef<HTMLDivElement>(null);
+  const [shown, show] = useState<Space | null>(null);
   const ready = store.revision.value !== null;
   useEffect(() => {
     if (!ready) return;
     const space = new Space(place.current!, store);
     onSpace(space);
+    show(space);
     return () => {
       onSpace(null);
+      show(null);
       space.dispose();
     };
   }, [ready]);
-  return <div ref={place} class="space" />;
+  return (
+    <>
+      <div ref={place} class="space" />
+      {ready && <SpaceTools store={store} space={shown} />}
+    </>
+  );
+}
+
+const HANDLES = [['move', 'Move'], ['turn', 'Turn'], ['scale', 'Scale']] as const;
+
+function SpaceTools({ store, space }: { store: Store; space: Space | null }) {
+  const { lights } = store.revision.value!.view;
+  const selected = store.selected.value;
+  const placed = lights.filter(({ position }) => position !== null);
+  return (
+    <div class="space-tools">
+      <div class="group" role="group" aria-label="Look">
+        <button type="button" onClick={() => space?.viewer.reset()}>
+          Overview
+        </button>
+        <button type="button" onClick={() => space?.viewer.lookThroughCamera()}>
+          Through the camera
+        </button>
+        {lights.length > 0 && (
+          <select
+            aria-label="Look from a light"
+            value=""
+            onChange={(event) => {
+              space?.viewer.lookFromLight(Number(event.currentTarget.value));
+              event.currentTarget.value = '';
+            }}
+          >
+            <option value="" disabled>
+              From a light
+            </option>
+            {lights.map(({ name }, index) => (
+              <option key={name} value={index}>
+                {name}
+              </option>
+            ))}
+          </select>
+        )}
+      </div>
+      {selected && (selected.kind !== 'light' || placed.some(({ name }) => name === selected.name)) && (
+        <div class="group" role="group" aria-label={`Handles of ${selected.name}`}>
+          {HANDLES.map(([value, title]) => (
+            <button type="button" key={value} aria-pressed={store.handles.value === value} onClick={() => (store.handles.value = value)}>
+              {title}
+            </button>
+          ))}
+          <label class="button">
+            <input type="checkbox" checked={store.snap.value !== null} onChange={(event) => (store.snap.value = event.currentTarget.checked ? 1 : null)} /> Snap
+          </label>
+        </div>
+      )}
+    </div>
+  );
 }
