@@ -4,7 +4,7 @@
  */
 
 import type { ExplainedNode, RayTreeDocument } from './generated/ray-tree';
-import type { ViewScene } from './generated/view';
+import type { ViewMesh as GeneratedMesh, ViewScene as GeneratedScene } from './generated/view';
 
 export type {
   Ending,
@@ -15,12 +15,23 @@ export type {
   LocalLight,
   RayTreeDocument,
 } from './generated/ray-tree';
-export type { ViewCamera, ViewLight, ViewMesh, ViewScene, ViewSphere } from './generated/view';
+export type { ViewCamera, ViewLight, ViewSphere } from './generated/view';
+
+/** Its lists are long, and may be typed arrays. Nobody changes a list in place: one that is given again is not looked at again. */
+export interface ViewMesh extends Omit<GeneratedMesh, 'vertices' | 'faces'> {
+  vertices: Numbers;
+  faces: Numbers;
+}
+
+export interface ViewScene extends Omit<GeneratedScene, 'meshes'> {
+  meshes: ViewMesh[];
+}
 
 export type RayKind = ExplainedNode['kind'];
 export type Transfer = RayTreeDocument['transfer'];
 export type Vec3 = [number, number, number];
 export type Color = [number, number, number];
+export type Numbers = number[] | Float32Array | Float64Array | Uint32Array;
 
 /** Everything that is shown. */
 export interface ViewerData {

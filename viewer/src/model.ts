@@ -42,6 +42,23 @@ export class TreeModel {
     return path;
   }
 
+  /** What happens on the path to a ray: the same for rays of other pixels that come the same way. */
+  way(id: number): string[] {
+    return this.path(id).map((at) => {
+      const { kind, band_nm, hit } = this.nodes[at]!;
+      return `${kind} ${band_nm} ${hit?.object}`;
+    });
+  }
+
+  /** The first ray that has come a way, if there is one. */
+  find(way: string[]): number | null {
+    const found = this.nodes.find(({ id }) => {
+      const own = this.way(id);
+      return own.length === way.length && own.every((step, index) => step === way[index]);
+    });
+    return found?.id ?? null;
+  }
+
   /**
    * The `limit` rays with the largest shares, in the order of their ids.
    * None is without its parent: no ray has a larger share than its parent, which comes first among equals.

@@ -13,44 +13,52 @@ export interface PanelEvents extends TreeEvents {
 
 export class Panel {
   readonly root = element('section', { class: 'panel', 'aria-label': 'Ray tree and details' });
-  model!: TreeModel;
-  private tree!: TreeView;
-  private readonly detail: DetailView;
-  private readonly treePlace = element('div', { style: 'display: contents' });
+  document: RayTreeDocument | null = null;
+  model: TreeModel | null = null;
+  selected: number | null = null;
+  private tree: TreeView | null = null;
+  private detail: DetailView | null = null;
 
-  constructor(
-    private readonly document: RayTreeDocument,
-    private readonly events: PanelEvents,
-  ) {
-    this.detail = new DetailView(document.transfer);
-    this.root.append(this.head(), this.treePlace, this.detail.root);
+  constructor(private readonly events: PanelEvents) {
+    this.setTree(null);
+  }
+
+  setTree(document: RayTreeDocument | null): void {
+    this.document = document;
+    this.root.hidden = document === null;
+    this.detail = document && new DetailView(document.transfer);
     this.showSample(0);
   }
 
   select(id: number | null): void {
-    this.tree.select(id);
-    this.detail.show(this.model, id);
+    this.selected = id;
+    this.tree?.select(id);
+    if (this.model !== null) this.detail?.show(this.model, id);
   }
 
   hover(id: number | null): void {
-    this.tree.hover(id);
+    this.tree?.hover(id);
   }
 
   private showSample(index: number): void {
-    this.model = new TreeModel(this.document.samples[index]!.nodes);
-    this.tree = new TreeView(this.model, this.document.transfer, this.events);
-    this.treePlace.replaceChildren(this.tree.root);
-    this.detail.show(this.model, null);
+    const { document } = this;
+    this.selected = null;
+    this.model = document && new TreeModel(document.samples[index]!.nodes);
+    this.tree = document && new TreeView(this.model!, document.transfer, this.events);
+    if (this.model === null) return this.root.replaceChildren();
+    this.detail!.show(this.model, null);
+    this.root.replaceChildren(this.head(document!, index), this.tree!.root, this.detail!.root);
   }
 
-  private head(): HTMLElement {
+  private head({ samples }: RayTreeDocument, index: number): HTMLElement {
     const head = element('div', { class: 'panel-head' }, element('h2', {}, 'Ray tree'));
-    const { samples } = this.document;
     if (samples.length > 1) {
       const picker = element('select', { 'aria-label': 'Sample' });
       samples.forEach((_, index) => picker.append(element('option', {}, `Sample ${index + 1} of ${samples.length}`)));
+      picker.selectedIndex = index;
       picker.addEventListener('change', () => {
         this.showSample(picker.selectedIndex);
+        this.root.querySelector('select')!.focus();
         this.events.sample();
       });
       head.append(picker);

@@ -1,6 +1,6 @@
 /** Looks at the data before anything is drawn, and names the first thing that is wrong. */
 
-import type { RayTreeDocument, ViewerData } from './data';
+import type { RayTreeDocument, ViewerData, ViewScene } from './data';
 
 /** What is wrong with the data, and where. */
 export class ViewerDataError extends Error {
@@ -10,10 +10,43 @@ export class ViewerDataError extends Error {
 /** Throws a `ViewerDataError` unless `value` can be shown. */
 export function validate(value: unknown): asserts value is ViewerData {
   const data = fields(value, 'data');
-  checkScene(data.scene);
+  validateScene(data.scene);
   validateTree(data.tree ?? null);
   if (data.title !== undefined) text(data.title, 'title');
   validatePicture(data.picture ?? null);
+}
+
+/** Throws a `ViewerDataError` unless `value` is a scene that can be shown. */
+export function validateScene(value: unknown): asserts value is ViewScene {
+  const scene = fields(value, 'scene');
+  version(scene.snell_view, 'scene.snell_view');
+  list(scene.spheres, 'scene.spheres', (item, path) => {
+    const sphere = surface(item, path);
+    triple(sphere.center, `${path}.center`);
+    number(sphere.radius, `${path}.radius`);
+  });
+  list(scene.meshes, 'scene.meshes', (item, path) => {
+    const mesh = surface(item, path);
+    if (right.get(mesh.vertices as object) === mesh.faces && mesh.faces !== undefined) return;
+    const vertices = numbers(mesh.vertices, `${path}.vertices`, Number.isFinite, 'a number') / 3;
+    if (!Number.isInteger(vertices)) fail(`${path}.vertices`, 'three numbers for each vertex', mesh.vertices);
+    const faces = numbers(mesh.faces, `${path}.faces`, (corner) => isPosition(corner, vertices), positions(vertices));
+    if (faces % 3 !== 0) fail(`${path}.faces`, 'three numbers for each face', mesh.faces);
+    right.set(mesh.vertices as object, mesh.faces);
+  });
+  const camera = fields(scene.camera, 'scene.camera');
+  triple(camera.eye, 'scene.camera.eye');
+  triple(camera.up, 'scene.camera.up');
+  list(camera.corners, 'scene.camera.corners', triple);
+  if ((camera.corners as unknown[]).length !== 4) fail('scene.camera.corners', 'four points', camera.corners);
+  list(scene.lights, 'scene.lights', (item, path) => {
+    const light = fields(item, path);
+    text(light.name, `${path}.name`);
+    triple(light.color, `${path}.color`);
+    if (light.position === null) triple(light.direction, `${path}.direction`);
+    else triple(light.position, `${path}.position`);
+  });
+  choice(scene.transfer, TRANSFERS, 'scene.transfer');
 }
 
 /** Throws a `ViewerDataError` unless `value` is `null` or a tree that can be shown. */
@@ -30,38 +63,10 @@ export function validatePicture(value: unknown): asserts value is BufferSource |
 type Fields = Record<string, unknown>;
 type Check = (value: unknown, path: string) => void;
 
-const TRANSFERS = ['srgb', 'linear'];
+/** Lists of vertices, with the faces for which they are right: scenes that change keep most of them. */
+const right = new WeakMap<object, unknown>();
 
-function checkScene(value: unknown): void {
-  const scene = fields(value, 'scene');
-  version(scene.snell_view, 'scene.snell_view');
-  list(scene.spheres, 'scene.spheres', (item, path) => {
-    const sphere = surface(item, path);
-    triple(sphere.center, `${path}.center`);
-    number(sphere.radius, `${path}.radius`);
-  });
-  list(scene.meshes, 'scene.meshes', (item, path) => {
-    const mesh = surface(item, path);
-    list(mesh.vertices, `${path}.vertices`, number);
-    const vertices = (mesh.vertices as number[]).length / 3;
-    if (!Number.isInteger(vertices)) fail(`${path}.vertices`, 'three numbers for each vertex', mesh.vertices);
-    list(mesh.faces, `${path}.faces`, (corner, at) => position(corner, vertices, at));
-    if ((mesh.faces as number[]).length % 3 !== 0) fail(`${path}.faces`, 'three numbers for each face', mesh.faces);
-  });
-  const camera = fields(scene.camera, 'scene.camera');
-  triple(camera.eye, 'scene.camera.eye');
-  triple(camera.up, 'scene.camera.up');
-  list(camera.corners, 'scene.camera.corners', triple);
-  if ((camera.corners as unknown[]).length !== 4) fail('scene.camera.corners', 'four points', camera.corners);
-  list(scene.lights, 'scene.lights', (item, path) => {
-    const light = fields(item, path);
-    text(light.name, `${path}.name`);
-    triple(light.color, `${path}.color`);
-    if (light.position === null) triple(light.direction, `${path}.direction`);
-    else triple(light.position, `${path}.position`);
-  });
-  choice(scene.transfer, TRANSFERS, 'scene.transfer');
-}
+const TRANSFERS = ['srgb', 'linear'];
 
 function surface(value: unknown, path: string): Fields {
   const object = fields(value, path);
@@ -141,6 +146,14 @@ function list(value: unknown, path: string, check: Check): void {
   value.forEach((item, index) => check(item, `${path}[${index}]`));
 }
 
+/** The length of a list of numbers, long or typed: without a path for each of them. */
+function numbers(value: unknown, path: string, check: (item: unknown) => boolean, expected: string): number {
+  if (!Array.isArray(value) && !(ArrayBuffer.isView(value) && !(value instanceof DataView))) fail(path, 'a list', value);
+  const items = value as ArrayLike<unknown>;
+  for (let index = 0; index < items.length; index++) if (!check(items[index])) fail(`${path}[${index}]`, expected, items[index]);
+  return items.length;
+}
+
 function optional(check: Check): Check {
   return (value, path) => value === null || check(value, path);
 }
@@ -167,9 +180,15 @@ function choice(value: unknown, choices: string[], path: string): void {
 
 /** A place in a list of which `length` items are known. */
 function position(value: unknown, length: number, path: string): void {
-  if (!Number.isInteger(value) || (value as number) < 0 || (value as number) >= length) {
-    fail(path, `a whole number from 0 to ${length - 1}`, value);
-  }
+  if (!isPosition(value, length)) fail(path, positions(length), value);
+}
+
+function isPosition(value: unknown, length: number): boolean {
+  return Number.isInteger(value) && (value as number) >= 0 && (value as number) < length;
+}
+
+function positions(length: number): string {
+  return `a whole number from 0 to ${length - 1}`;
 }
 
 function version(value: unknown, path: string): void {

@@ -1,24 +1,32 @@
 /** The drawing of a scene and, if there is one, the ray tree of a pixel beside it. */
 
-import type { RayTreeDocument, ViewerData } from './data';
+import type { RayTreeDocument, ViewerData, ViewScene } from './data';
 import { button, checkbox, element } from './dom';
+import { TreeModel } from './model';
 import { Panel } from './panel';
 import { nextPixel, type Pixel } from './pixels';
-import frameStyle from './style/frame.css?inline';
-import panelStyle from './style/panel.css?inline';
+import { styled } from './style';
 import { alternative, legend, pixelHeader, sceneHeader } from './texts';
 import { followTheme, LIGHT, type Scheme, setProperties, type Theme } from './theme';
 import { Drawing } from './three/drawing';
-import { validate, validatePicture, validateTree } from './validate';
+import { validate, validatePicture, validateScene, validateTree } from './validate';
 
 export interface ViewerOptions {
   /** Dark or light as the page asks for (`auto`), or always the same. */
   scheme?: Scheme;
+  /** The sentence above the drawing; shown unless it is `false`. */
+  header?: boolean;
+  /** The ray tree beside the drawing; shown unless it is `false`: then a `TreePanel` may show it elsewhere. */
+  panel?: boolean;
+  /** Buttons for the viewpoints and boxes (`full`), or only boxes, where the page has buttons of its own (`studio`). */
+  toolbar?: 'full' | 'studio';
 }
 
 export interface ViewerEvents {
   /** A ray of the sample that is shown, or none. */
   select: (id: number | null) => void;
+  /** The ray under the pointer, in the drawing or in the tree. */
+  hover: (id: number | null) => void;
   /** Someone asks for the rays of a pixel: its column and row, counted from the left and from the top. */
   pixel: (x: number, y: number) => void;
   /** The drawing has changed; not while the pointer is on a ray. */
@@ -37,11 +45,20 @@ export class Viewer {
   private readonly note = element('p', { role: 'status' });
   private readonly alternative = element('p', { id: 'alternative', class: 'hidden-text' });
   private readonly pictureBox = checkbox('Picture', true, (shown) => this.showPicture(shown));
+  private readonly lightButtons = element('div', { style: 'display: contents' });
   private readonly drawing: Drawing | null;
-  private readonly listeners: { [E in keyof ViewerEvents]: Set<ViewerEvents[E]> } = { select: new Set(), pixel: new Set(), draw: new Set() };
+  private readonly panel: Panel;
+  private readonly listeners: { [E in keyof ViewerEvents]: Set<ViewerEvents[E]> } = {
+    select: new Set(),
+    hover: new Set(),
+    pixel: new Set(),
+    draw: new Set(),
+  };
   private header = element('header');
-  private panel: Panel | null = null;
+  private scene: ViewScene;
+  /** What is drawn; the panel may show another pixel. */
   private tree: RayTreeDocument | null = null;
+  private model: TreeModel | null = null;
   /** What the note says of the drawing, of the picture, and for others. */
   private notes = { drawing: '', picture: '', hint: '', other: '' };
   /** The pixel that is shown, or has been asked for since. */
@@ -49,24 +66,31 @@ export class Viewer {
   private stopTheme: () => void = () => {};
   private theme: Theme = LIGHT;
   private state = { selected: null as number | null, hovered: null as number | null, allShadows: false };
+  /** What the colours of the theme are set on. */
+  private readonly themed: HTMLElement[] = [this.frame];
 
   /** See `mount`. */
   constructor(
     parent: HTMLElement,
     private readonly data: ViewerData,
-    options: ViewerOptions,
+    private readonly options: ViewerOptions,
   ) {
-    // The style of the page and that of the viewer must not meet.
-    const root = this.host.attachShadow({ mode: 'open' });
-    const sheet = new CSSStyleSheet();
-    sheet.replaceSync(panelStyle + frameStyle);
-    root.adoptedStyleSheets = [sheet];
+    this.scene = data.scene;
+    this.panel = new Panel({
+      select: (id) => this.inPanel(() => this.select(id)),
+      hover: (id) => this.inPanel(() => this.hover(id)),
+      sample: () => this.draw(this.panel.document, this.panel.model, null),
+    });
     this.drawing = this.makeDrawing();
-    this.frame.append(this.header, this.view());
-    root.append(this.frame);
+    if (options.header !== false) this.frame.append(this.header);
+    this.frame.append(this.view());
+    if (options.panel !== false) this.frame.append(this.panel.root);
+    styled(this.host).append(this.frame);
     parent.append(this.host);
     this.setScheme(options.scheme ?? 'auto');
-    this.showTree(data.tree ?? null);
+    this.showLights();
+    this.showHeader();
+    this.setTree(data.tree ?? null);
     void this.showPictureOf(data.picture ?? null);
   }
 
@@ -76,25 +100,93 @@ export class Viewer {
   }
 
   select(id: number | null): void {
-    if (id !== null && this.panel?.model.nodes[id] === undefined) throw new RangeError(`there is no ray ${id} in this sample`);
+    if (id !== null && this.model?.nodes[id] === undefined) throw new RangeError(`there is no ray ${id} in this sample`);
     if (id === this.state.selected) return;
     this.state.selected = id;
-    this.panel?.select(id);
+    if (this.panel.model === this.model) this.panel.select(id);
     this.update();
     for (const listener of this.listeners.select) listener(id);
   }
 
-  /** Shows the rays of another pixel, or none; the eye stays where it is. Throws a `ViewerDataError`. */
-  setTree(tree: RayTreeDocument | null): void {
+  /** Brings a ray forward as if the pointer were on it. */
+  hover(id: number | null): void {
+    if (id === this.state.hovered) return;
+    this.state.hovered = id;
+    if (this.panel.model === this.model) this.panel.hover(id);
+    this.update();
+    for (const listener of this.listeners.hover) listener(id);
+  }
+
+  /**
+   * Shows another scene. The eye stays where it is, unless it is to be `reset` as for the first one; rays and the mark of the pixel
+   * stay until there is another tree. Throws a `ViewerDataError`.
+   */
+  setScene(scene: ViewScene, { reset = false } = {}): void {
+    validateScene(scene);
+    const others = this.scene.lights.map(({ name }) => name).join() !== scene.lights.map(({ name }) => name).join();
+    this.scene = scene;
+    this.drawing?.setScene(scene, reset);
+    if (others) this.showLights();
+    if (this.panel.document === null) this.showHeader();
+    this.showPixels();
+    this.update();
+  }
+
+  /**
+   * Shows the rays of another pixel, or none; the eye stays where it is. With `keepSelection`, the ray that has come the same way
+   * is selected if one was. With `panel: false`, only the drawing shows them: as long as the pointer is on the pixel.
+   * Throws a `ViewerDataError`.
+   */
+  setTree(tree: RayTreeDocument | null, { keepSelection = false, panel = true } = {}): void {
     validateTree(tree);
-    this.select(null);
-    this.showTree(tree);
+    if (panel && tree !== this.panel.document) {
+      this.panel.setTree(tree);
+      this.showHeader();
+    }
+    const shown = tree === this.panel.document;
+    const model = shown ? this.panel.model : new TreeModel(tree!.samples[0]!.nodes);
+    const before = keepSelection && this.model && this.state.selected !== null ? this.model.way(this.state.selected) : null;
+    const kept = before && model ? model.find(before) : null;
+    this.draw(tree, model, kept ?? (shown ? this.panel.selected : null));
   }
 
   /** Shows another PNG on the image plane, or none. Throws a `ViewerDataError`; a note tells of bytes that are no picture. */
   setPicture(png: BufferSource | null): Promise<void> {
     validatePicture(png);
     return this.showPictureOf(png);
+  }
+
+  /** Shows a canvas on the image plane, or none. `size` is that of the picture; the canvas may have fewer pixels. */
+  setLivePicture(canvas: HTMLCanvasElement | OffscreenCanvas | null, size: Pixel): void {
+    this.drawing?.setLivePicture(canvas, size);
+    this.showPixels();
+  }
+
+  /** With the next frame, the image plane shows what its canvas shows then. */
+  pictureChanged(): void {
+    this.drawing?.pictureChanged();
+  }
+
+  lookThroughCamera(): void {
+    this.drawing?.lookThroughCamera();
+  }
+
+  /** Throws a `RangeError` if there is no such light. */
+  lookFromLight(index: number): void {
+    if (this.scene.lights[index] === undefined) throw new RangeError(`there is no light ${index} in this scene`);
+    this.drawing?.lookFromLight(index);
+  }
+
+  /** Looks at all from the side, as at first. */
+  reset(): void {
+    this.drawing?.reset(true);
+  }
+
+  /** For `TreePanel`. */
+  placePanel(frame: HTMLElement): void {
+    this.themed.push(frame);
+    setProperties(frame, this.theme);
+    frame.append(this.panel.root);
   }
 
   /** A quiet line below the drawing. */
@@ -106,7 +198,7 @@ export class Viewer {
     this.stopTheme();
     this.stopTheme = followTheme(scheme, (theme) => {
       this.theme = theme;
-      setProperties(this.frame, theme);
+      for (const frame of this.themed) setProperties(frame, theme);
       this.drawing?.setTheme(theme);
       this.update();
     });
@@ -124,7 +216,7 @@ export class Viewer {
 
   /** A PNG of the drawing, in the resolution of the screen but not wider than `maxWidth`; `null` if there is no drawing. */
   still(maxWidth: number): Promise<Blob | null> {
-    return this.drawing?.still(this.theme, maxWidth) ?? Promise.resolve(null);
+    return this.drawing?.still(maxWidth) ?? Promise.resolve(null);
   }
 
   /** Takes the viewer out of the page. */
@@ -132,37 +224,48 @@ export class Viewer {
     this.stopTheme();
     for (const listeners of Object.values(this.listeners)) listeners.clear();
     this.drawing?.dispose();
+    this.panel.root.remove();
     this.host.remove();
   }
 
-  private showTree(tree: RayTreeDocument | null): void {
+  /** Draws the rays of a sample, one of which may be selected. */
+  private draw(tree: RayTreeDocument | null, model: TreeModel | null, selected: number | null): void {
     this.tree = tree;
+    this.model = model;
     this.pixel = tree && tree.pixel;
-    const header = tree ? pixelHeader(tree) : sceneHeader(this.data.title ?? 'Scene', this.data.scene);
-    this.header.replaceWith(header);
-    this.header = header;
-    this.panel?.root.remove();
-    const events = {
-      select: (id: number | null) => this.select(id),
-      hover: (id: number | null) => this.hover(id),
-      sample: () => {
-        this.select(null);
-        this.showSample();
-      },
-    };
-    this.panel = tree && new Panel(tree, events);
-    if (this.panel) this.frame.append(this.panel.root);
-    this.frame.classList.toggle('alone', tree === null);
     this.drawing?.setTree(tree);
+    const left = this.drawing?.setModel(model) ?? 0;
+    if (this.drawing) this.showNote({ drawing: left > 0 ? `The ${left} weakest rays are not drawn; the tree has them all.` : '' });
+    this.frame.classList.toggle('without-rays', tree === null);
+    this.frame.classList.toggle('alone', this.options.panel === false || this.panel.document === null);
     this.showPixels();
-    this.showSample();
+    const [before, hovered] = [this.state.selected, this.state.hovered];
+    Object.assign(this.state, { selected, hovered: null });
+    if (this.panel.model === model && this.panel.selected !== selected) this.panel.select(selected);
+    this.update();
+    if (hovered !== null) for (const listener of this.listeners.hover) listener(null);
+    if (selected !== before) for (const listener of this.listeners.select) listener(selected);
   }
 
-  private showSample(): void {
-    this.state.hovered = null;
-    const left = (this.panel && this.drawing?.setModel(this.panel.model)) ?? 0;
-    if (this.drawing) this.showNote({ drawing: left > 0 ? `The ${left} weakest rays are not drawn; the tree has them all.` : '' });
-    this.update();
+  /** What is done to the panel is about its own rays: they are drawn again if others are. */
+  private inPanel(act: () => void): void {
+    const { document, model, selected } = this.panel;
+    if (model !== this.model) this.draw(document, model, selected);
+    act();
+  }
+
+  private showHeader(): void {
+    const { document } = this.panel;
+    const header = document ? pixelHeader(document) : sceneHeader(this.data.title ?? 'Scene', this.scene);
+    this.header.replaceWith(header);
+    this.header = header;
+  }
+
+  private showLights(): void {
+    const { drawing } = this;
+    if (drawing === null || this.options.toolbar === 'studio') return;
+    const { lights } = this.scene;
+    this.lightButtons.replaceChildren(...lights.map(({ name }, index) => button(`From light ${name}`, () => drawing.lookFromLight(index))));
   }
 
   private async showPictureOf(png: BufferSource | null): Promise<void> {
@@ -188,7 +291,7 @@ export class Viewer {
     drawing.picksPixels = this.listeners.pixel.size > 0;
     drawing.mark(this.pixel, this.tree && this.pixel === this.tree.pixel ? this.tree.size : size);
     this.pictureBox.hidden = drawing.plane.size === null;
-    this.alternative.textContent = alternative(this.data.scene, this.tree !== null, drawing.picksPixels && this.pixelsSize() !== null);
+    this.alternative.textContent = alternative(this.scene, this.tree !== null, drawing.picksPixels && this.pixelsSize() !== null);
     const asks = drawing.picksPixels && size !== null && this.pixel === null;
     this.showNote({ hint: asks ? 'Look through the camera and click a pixel to see its rays.' : '' });
     const rays = this.tree ? ` and the rays of pixel (${this.tree.pixel.join(', ')})` : '';
@@ -215,15 +318,8 @@ export class Viewer {
     this.ask(pixel);
   }
 
-  private hover(id: number | null): void {
-    if (id === this.state.hovered) return;
-    this.state.hovered = id;
-    this.panel?.hover(id);
-    this.update();
-  }
-
   private update(): void {
-    this.drawing?.show(this.state, this.theme);
+    this.drawing?.show(this.state);
   }
 
   private showNote(notes: Partial<Viewer['notes']>): void {
@@ -233,7 +329,7 @@ export class Viewer {
 
   private makeDrawing(): Drawing | null {
     try {
-      return new Drawing(this.data.scene, this.data.tree ?? null, {
+      return new Drawing(this.scene, this.data.tree ?? null, this.theme, {
         select: (id) => this.select(id),
         hover: (id) => this.hover(id),
         pixel: (pixel) => this.ask(pixel),
@@ -266,9 +362,9 @@ export class Viewer {
       const toolbar = element(
         'div',
         { class: 'toolbar', role: 'group', 'aria-label': 'Views' },
-        button('Reset', () => drawing.reset(true)),
-        button('Look through the camera', () => drawing.lookThroughCamera()),
-        ...this.data.scene.lights.map(({ name }, index) => button(`From light ${name}`, () => drawing.lookFromLight(index))),
+        ...(this.options.toolbar === 'studio'
+          ? []
+          : [button('Reset', () => this.reset()), button('Look through the camera', () => this.lookThroughCamera()), this.lightButtons]),
         checkbox('Names', true, (shown) => (drawing.names.root.hidden = !shown)),
         this.pictureBox,
         shadows,

@@ -34,7 +34,7 @@ describe('the scene alone', () => {
   test('has a title, no panel, and the whole width', async () => {
     const { page, trouble } = await open(browser, 'alone', { scene: glass().scene, title: '<b>glass</b>' });
     expect(await page.locator('header').innerText()).toBe('<b>glass</b>\n\n3 spheres · 1 mesh · 2 lights');
-    expect(await page.locator('.panel').count()).toBe(0);
+    expect(await page.locator('.panel:visible').count()).toBe(0);
     expect((await page.locator('canvas').boundingBox())!.width).toBe(1280);
     await expect(page.getByRole('application', { name: 'The scene in 3D' }).count()).resolves.toBe(1);
     // Neither does anything without rays or a picture.
@@ -60,7 +60,7 @@ describe('the scene alone', () => {
     expect(await page.getByRole('application', { name: 'The scene and the rays of pixel (3, 4) in 3D' }).count()).toBe(1);
     await page.evaluate(() => window.viewer.setTree(null));
     await settled(page);
-    expect(await page.locator('.panel').count()).toBe(0);
+    expect(await page.locator('.panel:visible').count()).toBe(0);
     expect(await page.getByLabel('Names').isChecked()).toBe(false);
     expect(await page.evaluate((canvas) => canvas === document.querySelector('#app > div')!.shadowRoot!.querySelector('canvas'), before)).toBe(true);
     expect(trouble).toEqual([]);

@@ -1,8 +1,8 @@
 /** A drawing is the same whatever its scene is measured in. */
 
 import { expect, test } from 'vitest';
+import { creases } from '../src/three/creases';
 import { extentOf } from '../src/three/extent';
-import { creases, flatGeometry } from '../src/three/objects';
 import { scaledNodes, scaledScene, unitFor } from '../src/three/unit';
 import { glass } from './fixture';
 
@@ -46,7 +46,7 @@ test('a cube has twelve edges, however small, and however fine beside the scene'
   const faces = [0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5];
   for (const size of [1e-9, 1, 1e9]) {
     const vertices = [0, 1, 2, 3, 4, 5, 6, 7].flatMap((n) => corner(n).map((value) => value * size));
-    const found = creases(flatGeometry({ name: 'cube', vertices, faces, color: [1, 1, 1], opacity: 1 }));
+    const found = creases({ name: 'cube', vertices, faces, color: [1, 1, 1], opacity: 1 });
     expect(found.length).toBe(12);
     for (const [from, to] of found) expect(Math.hypot(...from.map((x, axis) => x - to[axis]!)) / size).toBeCloseTo(1, 5);
   }

@@ -9,8 +9,8 @@ import { Annotation, Compartment, EditorState, type Text } from '@codemirror/sta
 import {
   drawSelection, EditorView, highlightActiveLine, highlightActiveLineGutter, hoverTooltip, keymap, lineNumbers, type Rect, type Tooltip,
 } from '@codemirror/view';
+import type { Finding } from '../engine/protocol';
 import { type KnownNames, type Suggestion, suggestionsAt } from './complete';
-import type { Finding } from './finding';
 import { type Lines, linesOf, minimalChange, offsetOf, withLines } from './lines';
 import { entryAt } from './schema';
 import { style, toml } from './style';

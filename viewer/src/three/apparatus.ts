@@ -16,18 +16,14 @@ export class Apparatus {
   private readonly lines: LineSet;
   private readonly marks: MarkSet;
 
-  constructor(
-    private readonly scene: ViewScene,
-    private readonly extent: Extent,
-    uniforms: ScreenUniforms,
-  ) {
+  constructor(uniforms: ScreenUniforms) {
     this.lines = new LineSet(uniforms);
     this.marks = new MarkSet(uniforms);
     this.group.add(this.lines.group, this.marks.points);
   }
 
-  setTheme(theme: Theme): void {
-    const { eye, corners } = this.scene.camera;
+  set(scene: ViewScene, extent: Extent, theme: Theme): void {
+    const { eye, corners } = scene.camera;
     const [leftBottom, rightBottom, leftTop, rightTop] = corners;
     const line = (from: Vec3, to: Vec3, opacity: number): DrawnLine => ({ from, to, color: theme.ink, width: 1, opacity, open: false });
     const frame: [Vec3, Vec3][] = [
@@ -39,9 +35,9 @@ export class Apparatus {
     this.lines.set([
       ...corners.map((corner) => line(eye, corner, 0.4)),
       ...frame.map(([from, to]) => line(from, to, 0.75)),
-      ...this.scene.lights.flatMap(({ direction }) => (direction === null ? [] : this.sunlight(direction, theme))),
+      ...scene.lights.flatMap(({ direction }) => (direction === null ? [] : sunlight(direction, scene, extent, theme))),
     ]);
-    const lamps = this.scene.lights.flatMap(({ position }) => (position === null ? [] : [position]));
+    const lamps = scene.lights.flatMap(({ position }) => (position === null ? [] : [position]));
     this.marks.set([
       { at: eye, color: theme.ink, size: 6, opacity: 0.9 },
       ...lamps.map((at): Mark => ({ at, color: theme.bulb, size: 30, opacity: 1, shape: 'lamp' })),
@@ -52,18 +48,18 @@ export class Apparatus {
     this.lines.dispose();
     this.marks.dispose();
   }
+}
 
-  /** Three parallel arrows: from infinitely far away all of its light comes from the same side. */
-  private sunlight(direction: Vec3, theme: Theme): DrawnLine[] {
-    const start = arrowStart(direction, this.extent);
-    const towards = new Vector3(...direction).normalize();
-    const up = new Vector3(...this.scene.camera.up);
-    const side = new Vector3().crossVectors(towards, Math.abs(towards.dot(up.normalize())) < 0.99 ? up : new Vector3(1, 0, 0.5));
-    side.setLength(0.05 * this.extent.radius);
-    return [-1, 0, 1].map((place) => {
-      const from = start.clone().addScaledVector(side, place).toArray();
-      const to = along(from, towards.toArray(), -ARROW * this.extent.radius);
-      return { from, to, color: theme.bulb, width: 1.6, opacity: 0.95, open: false, arrow: true };
-    });
-  }
+/** Three parallel arrows: from infinitely far away all of its light comes from the same side. */
+function sunlight(direction: Vec3, scene: ViewScene, extent: Extent, theme: Theme): DrawnLine[] {
+  const start = arrowStart(direction, extent);
+  const towards = new Vector3(...direction).normalize();
+  const up = new Vector3(...scene.camera.up);
+  const side = new Vector3().crossVectors(towards, Math.abs(towards.dot(up.normalize())) < 0.99 ? up : new Vector3(1, 0, 0.5));
+  side.setLength(0.05 * extent.radius);
+  return [-1, 0, 1].map((place) => {
+    const from = start.clone().addScaledVector(side, place).toArray();
+    const to = along(from, towards.toArray(), -ARROW * extent.radius);
+    return { from, to, color: theme.bulb, width: 1.6, opacity: 0.95, open: false, arrow: true };
+  });
 }

@@ -10,10 +10,10 @@ import type { Theme } from '../theme';
 import { Apparatus } from './apparatus';
 import { type Extent, extentOf } from './extent';
 import { ImagePlane } from './image-plane';
-import { Names } from './names';
+import { Names, sceneLabels } from './names';
 import { Objects } from './objects';
 import { pick, type PickedLine } from './picking';
-import { type RayState, Rays } from './rays';
+import { type DrawnSample, type RayState, Rays } from './rays';
 import { Stage } from './stage';
 import { stillOf } from './still';
 import { scaledNodes, scaledScene, unitFor } from './unit';
@@ -35,48 +35,57 @@ const REACH = 0.55;
 /** Pixels that the pointer may move between down and up in a click. */
 const CLICK = 4;
 
+/** Of the old radius: scenes that grow less, or move less, are still the same drawing. */
+const [GROWS, MOVES] = [1.5, 0.5];
+
 export class Drawing {
   readonly root = element('div', { class: 'stage' });
-  readonly names: Names;
+  readonly names = new Names();
   readonly stage: Stage;
   readonly plane: ImagePlane;
   /** Can pixels of the picture be clicked? */
   picksPixels = false;
   /** In the drawing's own unit, like all lengths here. */
-  private readonly scene: ViewScene;
+  private scene: ViewScene;
   /** By what lengths are multiplied. */
-  private readonly unit: number;
-  private readonly extent: Extent;
+  private unit!: number;
+  private extent!: Extent;
+  private tree: RayTreeDocument | null;
+  private model: TreeModel | null = null;
+  private sample: DrawnSample | null = null;
   private readonly objects: Objects;
   private readonly apparatus: Apparatus;
-  /** What is seen at first: with the rays that are shown. */
-  private home: Extent;
-  private rays: Rays | null = null;
+  private readonly rays: Rays;
   private lines: PickedLine[] = [];
   private readonly target = element('span', { class: 'target', 'aria-hidden': true, hidden: true });
   private pressed = new Vector3();
   private pictures = 0;
-  private readonly overview = () => overview(this.scene.camera, this.home, this.stage.aspect, this.plane.size !== null);
+  /** With the rays that are shown. */
+  private readonly overview = () => {
+    const home = extentOf(this.scene, scaledNodes(strongestOf(this.tree), this.unit));
+    return overview(this.scene.camera, home, this.stage.aspect, this.plane.size !== null);
+  };
   /** The viewpoint that the eye is at, fitted to each new size; `null` when somebody has moved it. */
   private standing: (() => Viewpoint) | null = this.overview;
 
   constructor(
     given: ViewScene,
     tree: RayTreeDocument | null,
+    private theme: Theme,
     private readonly events: DrawingEvents,
   ) {
-    this.unit = unitFor(extentOf(given, strongestOf(tree)).radius);
-    const scene = (this.scene = scaledScene(given, this.unit));
-    this.home = this.extent = extentOf(scene, this.strongest(tree));
-    this.stage = new Stage(new Vector3(...scene.camera.up).normalize(), this.extent.radius);
-    this.objects = new Objects(scene, scene.transfer, this.stage.uniforms);
-    this.apparatus = new Apparatus(scene, this.extent, this.stage.uniforms);
-    this.plane = new ImagePlane(scene.camera, this.stage.uniforms);
-    this.names = new Names(this.extent);
-    this.stage.scene.add(this.objects.group, this.plane.group, this.apparatus.group);
-    this.stage.scene.onBeforeRender = () => this.plane.prepare(this.stage.camera, this.stage.uniforms.size.value.y);
+    this.tree = tree;
+    this.scene = this.measure(given);
+    this.stage = new Stage(this.up, this.extent.radius);
+    const { uniforms, scene } = this.stage;
+    this.objects = new Objects(uniforms);
+    this.apparatus = new Apparatus(uniforms);
+    this.plane = new ImagePlane(uniforms);
+    this.rays = new Rays(uniforms);
+    scene.add(this.objects.group, this.plane.group, this.apparatus.group, this.rays.group);
+    scene.onBeforeRender = () => this.plane.prepare(this.stage.camera, uniforms.size.value.y);
     this.stage.onFrame = () => {
-      const { x, y } = this.stage.uniforms.size.value;
+      const { x, y } = uniforms.size.value;
       this.names.update(this.stage.camera, x, y);
       this.events.frame();
     };
@@ -84,25 +93,42 @@ export class Drawing {
     this.stage.onResize = () => this.standing && this.stage.show(this.standing(), false);
     this.stage.onMove = () => (this.standing = null);
     this.listen(this.stage.canvas);
+    this.showScene();
+  }
+
+  /**
+   * Shows another scene. The eye stays where it is, unless it looks through the camera or from a light, or all begins anew:
+   * then the scene may be of another size too.
+   */
+  setScene(given: ViewScene, reset: boolean): void {
+    if (reset) {
+      this.scene = this.measure(given);
+      this.stage.setSpace(this.up, this.extent.radius);
+      this.setSample();
+    } else {
+      this.scene = scaledScene(given, this.unit);
+      const { center, radius } = extentOf(this.scene, []);
+      const ratio = radius / this.extent.radius;
+      const same = ratio < GROWS && ratio > 1 / GROWS && center.distanceTo(this.extent.center) < MOVES * this.extent.radius;
+      if (!same) this.extent = extentOf(this.scene, []);
+    }
+    this.showScene();
+    if (reset) this.reset(false);
+    else if (this.standing !== null && this.standing !== this.overview) this.stage.show(this.standing(), false);
+    this.stage.requestFrame();
   }
 
   /** Prepares for the rays of a pixel. The eye stays where it is. */
   setTree(tree: RayTreeDocument | null): void {
-    this.removeRays();
-    this.home = extentOf(this.scene, this.strongest(tree));
-    this.names.set(named(this.scene, tree));
+    this.tree = tree;
+    this.showNames();
   }
 
-  /** Shows the rays of a sample; returns how many of them are not drawn. */
-  setModel(model: TreeModel): number {
-    this.removeRays();
-    const drawn = model.strongest(MAX_RAYS);
-    const reach = REACH * this.extent.radius;
-    const nodes = scaledNodes(model.nodes, this.unit);
-    this.rays = new Rays(model, nodes, drawn, reach, this.scene.camera.eye, this.stage.uniforms);
-    this.stage.scene.add(this.rays.group);
-    this.lines = drawn.map((id) => ({ id, ...rayLine(nodes[id]!, reach) }));
-    return model.nodes.length - drawn.length;
+  /** Shows the rays of a sample, or none; returns how many of them are not drawn. */
+  setModel(model: TreeModel | null): number {
+    this.model = model;
+    this.setSample();
+    return model === null ? 0 : model.nodes.length - this.sample!.drawn.length;
   }
 
   /** Rejects what is not a PNG. The last call wins, whichever is read first. */
@@ -115,20 +141,36 @@ export class Drawing {
     this.stage.requestFrame();
   }
 
+  /** Shows a canvas that changes, instead of a PNG. */
+  setLivePicture(canvas: HTMLCanvasElement | OffscreenCanvas | null, size: Pixel): void {
+    this.pictures++;
+    const first = this.plane.size === null;
+    this.plane.setPicture(canvas, canvas && size);
+    if (first && this.standing === this.overview) this.reset(false);
+    this.stage.requestFrame();
+  }
+
+  pictureChanged(): void {
+    this.plane.pictureChanged();
+    this.stage.requestFrame();
+  }
+
   mark(pixel: Pixel | null, size: Pixel | null): void {
     this.plane.mark(pixel && size && middleOf(pixel, size));
     this.stage.requestFrame();
   }
 
-  show(state: RayState, theme: Theme): void {
-    this.rays?.show(state, theme);
+  show(state: RayState): void {
+    this.rays.show(this.sample, state, this.theme);
+    this.names.setImportant(new Set([state.selected, state.hovered].map((id) => this.objectMetBy(id))));
     this.stage.canvas.classList.toggle('on-ray', state.hovered !== null);
     this.stage.requestFrame();
   }
 
   setTheme(theme: Theme): void {
+    this.theme = theme;
     this.objects.setTheme(theme);
-    this.apparatus.setTheme(theme);
+    this.apparatus.set(this.scene, this.extent, theme);
     this.plane.setTheme(theme);
   }
 
@@ -146,37 +188,65 @@ export class Drawing {
   }
 
   /** A PNG of what is shown; `null` while it has no place in a page. */
-  async still(theme: Theme, maxWidth: number): Promise<Blob | null> {
+  async still(maxWidth: number): Promise<Blob | null> {
     const { canvas } = this.stage;
     if (canvas.clientWidth === 0) return null;
     this.stage.render();
-    return stillOf(canvas, this.names, theme, maxWidth);
+    return stillOf(canvas, this.names, this.theme, maxWidth);
   }
 
   dispose(): void {
     this.pictures++;
-    this.removeRays();
+    this.rays.dispose();
     this.objects.dispose();
     this.apparatus.dispose();
     this.plane.dispose();
     this.stage.dispose();
   }
 
-  private strongest(tree: RayTreeDocument | null): RayNode[] {
-    return scaledNodes(strongestOf(tree), this.unit);
+  private get up(): Vector3 {
+    return new Vector3(...this.scene.camera.up).normalize();
+  }
+
+  /** Chooses the unit for a scene, and returns the scene in it. */
+  private measure(given: ViewScene): ViewScene {
+    const nodes = strongestOf(this.tree);
+    this.unit = unitFor(extentOf(given, nodes).radius);
+    const scene = scaledScene(given, this.unit);
+    this.extent = extentOf(scene, scaledNodes(nodes, this.unit));
+    return scene;
+  }
+
+  private showScene(): void {
+    this.objects.setScene(this.scene, this.theme);
+    this.apparatus.set(this.scene, this.extent, this.theme);
+    this.plane.setCamera(this.scene.camera);
+    this.showNames();
+  }
+
+  private showNames(): void {
+    this.names.set('scene', sceneLabels(named(this.scene, this.tree), this.extent));
+  }
+
+  private setSample(): void {
+    const { model } = this;
+    this.sample = null;
+    this.lines = [];
+    if (model === null) return;
+    const drawn = model.strongest(MAX_RAYS);
+    const reach = REACH * this.extent.radius;
+    const nodes = scaledNodes(model.nodes, this.unit);
+    this.sample = { model, nodes, drawn, reach, eye: this.scene.camera.eye };
+    this.lines = drawn.map((id) => ({ id, ...rayLine(nodes[id]!, reach) }));
+  }
+
+  private objectMetBy(id: number | null): string {
+    return (id !== null && this.model?.nodes[id]?.hit?.object) || '';
   }
 
   private stand(view: () => Viewpoint, smoothly: boolean): void {
     this.standing = view;
     this.stage.show(view(), smoothly);
-  }
-
-  private removeRays(): void {
-    if (this.rays === null) return;
-    this.stage.scene.remove(this.rays.group);
-    this.rays.dispose();
-    this.rays = null;
-    this.lines = [];
   }
 
   private listen(canvas: HTMLCanvasElement): void {

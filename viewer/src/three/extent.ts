@@ -1,7 +1,7 @@
 /** What the drawing is about: the camera, the rays and what is near them; or without rays, the objects before the camera. */
 
 import { Box3, Sphere, Vector3 } from 'three';
-import type { RayNode, Vec3, ViewScene } from '../data';
+import type { Numbers, RayNode, Vec3, ViewMesh, ViewScene } from '../data';
 
 export interface Extent {
   /** The ends of the rays, and objects; points are spheres without a radius. */
@@ -66,9 +66,18 @@ export function bounds(spheres: Sphere[]): { center: Vector3; radius: number } {
   return { center: box.getCenter(new Vector3()), radius: box.getSize(new Vector3()).length() / 2 };
 }
 
-function corners({ vertices }: { vertices: number[] }): Sphere[] {
-  if (vertices.length === 0) return [];
-  const { min, max } = new Box3().setFromArray(vertices);
+const boxes = new WeakMap<Numbers, Box3>();
+
+/** Looked for once in each list: there may be many vertices, and scenes that change keep most of them. */
+export function boxOf({ vertices }: ViewMesh): Box3 {
+  let box = boxes.get(vertices);
+  if (box === undefined) boxes.set(vertices, (box = new Box3().setFromArray(vertices as ArrayLike<number> as number[])));
+  return box;
+}
+
+function corners(mesh: ViewMesh): Sphere[] {
+  if (mesh.vertices.length === 0) return [];
+  const { min, max } = boxOf(mesh);
   return [0, 1, 2, 3, 4, 5, 6, 7].map((n) => ball([n & 1 ? max.x : min.x, n & 2 ? max.y : min.y, n & 4 ? max.z : min.z], 0));
 }
 

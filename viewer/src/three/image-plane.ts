@@ -43,7 +43,8 @@ void main() {
   vec2 at = vPlace * size;
   vec2 edge = floor(at + 0.5);
   at = edge + clamp((at - edge) / min(fwidth(at), 1.0), -0.5, 0.5);
-  gl_FragColor = vec4(textureGrad(map, at / size, dFdx(vPlace), dFdy(vPlace)).rgb, 1.0);
+  // What is not rendered yet is clear.
+  gl_FragColor = textureGrad(map, at / size, dFdx(vPlace), dFdy(vPlace));
 }`;
 
 /** Among translucent things: behind all others, and over all surfaces and their edges but under the rays. */
@@ -52,6 +53,8 @@ const [BEHIND, BEFORE] = [0.5, 9.5];
 /** Pixels of the screen. */
 const MARK = 13;
 
+export type Picture = ImageBitmap | HTMLCanvasElement | OffscreenCanvas;
+
 export class ImagePlane {
   readonly group = new Group();
   /** Columns and rows of the picture. */
@@ -59,55 +62,78 @@ export class ImagePlane {
   private readonly tint: Mesh<BufferGeometry, ShaderMaterial>;
   private readonly picture: Mesh<BufferGeometry, ShaderMaterial>;
   private readonly marks: MarkSet;
-  private readonly corner: Vector3;
-  private readonly right: Vector3;
-  private readonly down: Vector3;
+  private readonly geometry = new BufferGeometry();
+  private readonly corner = new Vector3();
+  private readonly right = new Vector3();
+  private readonly down = new Vector3();
   /** Towards the scene. */
-  private readonly forward: Vector3;
-  private texture: Texture | null = null;
+  private readonly forward = new Vector3();
+  /** What is marked, as parts of the width and of the height. */
+  private place: [number, number] | null = null;
+  private texture: Texture<Picture> | null = null;
   private shown = true;
 
-  constructor({ eye, corners }: ViewCamera, uniforms: ScreenUniforms) {
-    const [leftBottom, , leftTop, rightTop] = corners.map((corner) => new Vector3(...corner)) as [Vector3, Vector3, Vector3, Vector3];
-    this.corner = leftTop;
-    this.right = rightTop.sub(leftTop);
-    this.down = leftBottom.sub(leftTop);
-    this.forward = new Vector3().crossVectors(this.right, this.down);
-    if (leftTop.clone().sub(new Vector3(...eye)).dot(this.forward) < 0) this.forward.negate();
-    const geometry = new BufferGeometry();
-    geometry.setAttribute('position', new Float32BufferAttribute(corners.flat(), 3));
+  constructor(uniforms: ScreenUniforms) {
+    this.geometry.setAttribute('position', new Float32BufferAttribute(new Float32Array(12), 3));
     // Row 0 of a picture is its top.
-    geometry.setAttribute('uv', new Float32BufferAttribute([0, 1, 1, 1, 0, 0, 1, 0], 2));
-    geometry.setIndex([0, 1, 3, 0, 3, 2]);
+    this.geometry.setAttribute('uv', new Float32BufferAttribute([0, 1, 1, 1, 0, 0, 1, 0], 2));
+    this.geometry.setIndex([0, 1, 3, 0, 3, 2]);
     const material = (fragmentShader: string, own: ShaderMaterial['uniforms']) =>
       new ShaderMaterial({ vertexShader: VERTEX, fragmentShader, uniforms: own, side: DoubleSide, transparent: true, depthWrite: false });
-    this.tint = new Mesh(geometry, material(TINT, { color: { value: new Color() } }));
+    this.tint = new Mesh(this.geometry, material(TINT, { color: { value: new Color() } }));
     this.tint.renderOrder = 2;
-    this.picture = new Mesh(geometry, material(PICTURE, { map: { value: null }, size: { value: new Vector2() } }));
+    this.picture = new Mesh(this.geometry, material(PICTURE, { map: { value: null }, size: { value: new Vector2() } }));
+    for (const mesh of [this.tint, this.picture]) mesh.frustumCulled = false;
     this.marks = new MarkSet(uniforms);
     this.group.add(this.tint, this.picture, this.marks.points);
     this.update();
+  }
+
+  setCamera({ eye, corners }: ViewCamera): void {
+    const [leftBottom, , leftTop, rightTop] = corners.map((corner) => new Vector3(...corner)) as [Vector3, Vector3, Vector3, Vector3];
+    this.corner.copy(leftTop);
+    this.right.subVectors(rightTop, leftTop);
+    this.down.subVectors(leftBottom, leftTop);
+    this.forward.crossVectors(this.right, this.down);
+    if (leftTop.sub(new Vector3(...eye)).dot(this.forward) < 0) this.forward.negate();
+    const position = this.geometry.getAttribute('position');
+    position.array.set(corners.flat());
+    position.needsUpdate = true;
+    this.mark(this.place);
   }
 
   setTheme(theme: Theme): void {
     (this.tint.material.uniforms.color!.value as Color).fromArray(screenColor(theme.accent));
   }
 
-  /** `size` is that of the picture itself; `bitmap` may be a smaller copy. */
-  setPicture(bitmap: ImageBitmap | null, size: Pixel | null): void {
+  /** `size` is that of the picture itself; the image may be a smaller copy, or a canvas that changes. */
+  setPicture(image: Picture | null, size: Pixel | null): void {
     this.dropTexture();
     this.size = size;
-    if (bitmap !== null) {
-      this.texture = new Texture(bitmap);
+    if (image !== null) {
+      const still = image instanceof ImageBitmap;
+      this.texture = new Texture(image);
       this.texture.flipY = false;
       this.texture.magFilter = LinearFilter;
-      this.texture.minFilter = LinearMipmapLinearFilter;
-      this.texture.anisotropy = 16;
-      this.texture.needsUpdate = true;
+      // Smaller copies would have to be made with each change.
+      this.texture.minFilter = still ? LinearMipmapLinearFilter : LinearFilter;
+      this.texture.generateMipmaps = still;
+      this.texture.anisotropy = still ? 16 : 1;
       this.picture.material.uniforms.map!.value = this.texture;
-      (this.picture.material.uniforms.size!.value as Vector2).set(bitmap.width, bitmap.height);
+      this.pictureChanged();
     }
     this.update();
+  }
+
+  /** What the picture's canvas shows is looked at again. */
+  pictureChanged(): void {
+    if (this.texture === null) return;
+    const { width, height } = this.texture.image;
+    const size = this.picture.material.uniforms.size!.value as Vector2;
+    // The graphics card keeps a place of this size for it.
+    if (size.x !== width || size.y !== height) this.texture.dispose();
+    size.set(width, height);
+    this.texture.needsUpdate = true;
   }
 
   showPicture(shown: boolean): void {
@@ -117,6 +143,7 @@ export class ImagePlane {
 
   /** Marks a place: parts of the width from the left and of the height from the top. */
   mark(place: [number, number] | null): void {
+    this.place = place;
     const at = place && this.corner.clone().addScaledVector(this.right, place[0]).addScaledVector(this.down, place[1]);
     this.marks.set(at === null ? [] : [{ at: at.toArray() as Vec3, color: '#ffffff', size: MARK, opacity: 1, shape: 'frame' }]);
   }
@@ -146,7 +173,7 @@ export class ImagePlane {
   dispose(): void {
     this.dropTexture();
     this.marks.dispose();
-    this.tint.geometry.dispose();
+    this.geometry.dispose();
     this.tint.material.dispose();
     this.picture.material.dispose();
   }
@@ -157,7 +184,7 @@ export class ImagePlane {
   }
 
   private dropTexture(): void {
-    (this.texture?.image as ImageBitmap | undefined)?.close();
+    if (this.texture?.image instanceof ImageBitmap) this.texture.image.close();
     this.texture?.dispose();
     this.texture = null;
   }

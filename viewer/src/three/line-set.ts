@@ -4,7 +4,7 @@
  */
 
 import {
-  BufferGeometry,
+  type BufferGeometry,
   Color,
   Float32BufferAttribute,
   GreaterDepth,
@@ -102,17 +102,25 @@ void main() {
 const CORNERS = [0, -1, 0, 1, -1, 0, 1, 1, 0, 0, 1, 0, 1, 0, 1, -1, 1, 1, -1, -1, 1];
 const TRIANGLES = [0, 1, 2, 0, 2, 3, 4, 5, 6];
 
+/** Columns of numbers, one row for each line: their names and widths. */
+const COLUMNS = [['from', 3], ['to', 3], ['tint', 3], ['look', 4]] as const;
+
 export class LineSet {
   readonly group = new Group();
-  private geometry = new BufferGeometry();
+  private geometry = new InstancedBufferGeometry();
+  /** Lines that there is room for: sets change with each frame, and rooms do not. */
+  private room = 0;
 
-  /** `order` is the place among translucent things: by default over all surfaces. */
-  constructor(uniforms: ScreenUniforms, order = 10) {
+  /**
+   * `order` is the place among translucent things: by default over all surfaces. `behind` is how much is seen of what is behind
+   * an opaque object.
+   */
+  constructor(uniforms: ScreenUniforms, order = 10, behind = BEHIND) {
     for (const hidden of [true, false]) {
       const material = new ShaderMaterial({
         vertexShader: VERTEX,
         fragmentShader: FRAGMENT,
-        uniforms: { ...uniforms, strength: { value: hidden ? BEHIND : 1 } },
+        uniforms: { ...uniforms, strength: { value: hidden ? behind : 1 } },
         transparent: true,
         depthWrite: false,
         depthFunc: hidden ? GreaterDepth : LessEqualDepth,
@@ -120,27 +128,29 @@ export class LineSet {
       const mesh = new Mesh(this.geometry, material);
       mesh.frustumCulled = false;
       mesh.renderOrder = order;
+      mesh.visible = false;
       this.group.add(mesh);
     }
   }
 
   /** Later lines are drawn over earlier ones. */
   set(lines: DrawnLine[]): void {
-    const geometry = new InstancedBufferGeometry();
-    geometry.setAttribute('position', new Float32BufferAttribute(CORNERS, 3));
-    geometry.setIndex(TRIANGLES);
-    geometry.instanceCount = lines.length;
-    const column = (name: string, size: number, values: (line: DrawnLine) => number[]) =>
-      geometry.setAttribute(name, new InstancedBufferAttribute(new Float32Array(lines.flatMap(values)), size));
-    column('from', 3, (line) => line.from);
-    column('to', 3, (line) => line.to);
-    column('tint', 3, (line) => screenColor(line.color));
-    column('look', 4, ({ width, opacity, open, dashed, arrow }) => [width, opacity, open ? 0 : opacity, dashed ? 1 : arrow ? 2 : 0]);
-    this.geometry.dispose();
-    this.geometry = geometry;
-    for (const mesh of this.meshes()) {
-      mesh.geometry = geometry;
-      mesh.visible = lines.length > 0;
+    if (lines.length > this.room) this.makeRoom(Math.max(64, 2 * lines.length));
+    this.geometry.instanceCount = lines.length;
+    for (const mesh of this.meshes()) mesh.visible = lines.length > 0;
+    if (lines.length === 0) return;
+    const [from, to, tint, look] = COLUMNS.map(([name]) => this.geometry.getAttribute(name)) as [Column, Column, Column, Column];
+    lines.forEach((line, row) => {
+      const { width, opacity, open, dashed, arrow } = line;
+      from.array.set(line.from, 3 * row);
+      to.array.set(line.to, 3 * row);
+      tint.array.set(screenColor(line.color), 3 * row);
+      look.array.set([width, opacity, open ? 0 : opacity, dashed ? 1 : arrow ? 2 : 0], 4 * row);
+    });
+    for (const column of [from, to, tint, look]) {
+      column.clearUpdateRanges();
+      column.addUpdateRange(0, lines.length * column.itemSize);
+      column.needsUpdate = true;
     }
   }
 
@@ -149,13 +159,32 @@ export class LineSet {
     for (const mesh of this.meshes()) mesh.material.dispose();
   }
 
+  private makeRoom(room: number): void {
+    const geometry = new InstancedBufferGeometry();
+    geometry.setAttribute('position', new Float32BufferAttribute(CORNERS, 3));
+    geometry.setIndex(TRIANGLES);
+    for (const [name, width] of COLUMNS) geometry.setAttribute(name, new InstancedBufferAttribute(new Float32Array(width * room), width));
+    this.geometry.dispose();
+    this.geometry = geometry;
+    this.room = room;
+    for (const mesh of this.meshes()) mesh.geometry = geometry;
+  }
+
   private meshes(): Mesh<BufferGeometry, ShaderMaterial>[] {
     return this.group.children as Mesh<BufferGeometry, ShaderMaterial>[];
   }
 }
 
+type Column = InstancedBufferAttribute & { array: Float32Array };
+
+const parsed = new Map<string, [number, number, number]>();
+
 /** The shaders here write the colours of the screen themselves, without the linear detour of three.js. */
 export function screenColor(css: string): [number, number, number] {
-  const { r, g, b } = new Color().setStyle(css).convertLinearToSRGB();
-  return [r, g, b];
+  let color = parsed.get(css);
+  if (color === undefined) {
+    const { r, g, b } = new Color().setStyle(css).convertLinearToSRGB();
+    parsed.set(css, (color = [r, g, b]));
+  }
+  return color;
 }

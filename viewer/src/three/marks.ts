@@ -1,6 +1,6 @@
 /** Dots where rays end, lamps, and the frame of a pixel: marks of a size in pixels. */
 
-import { BufferGeometry, Float32BufferAttribute, Points, ShaderMaterial } from 'three';
+import { BufferAttribute, BufferGeometry, Points, ShaderMaterial } from 'three';
 import type { Vec3 } from '../data';
 import { screenColor, type ScreenUniforms } from './line-set';
 
@@ -11,13 +11,15 @@ export interface Mark {
   size: number;
   opacity: number;
   /** A dot unless it is said. */
-  shape?: 'lamp' | 'frame';
+  shape?: 'lamp' | 'frame' | 'ring';
 }
+
+const SHAPES = ['dot', 'lamp', 'frame', 'ring'];
 
 const VERTEX = /* glsl */ `
 uniform float ratio;
 attribute vec3 tint;
-attribute vec3 look; // size, opacity, 1: lamp, 2: frame
+attribute vec3 look; // size, opacity, place among the shapes
 varying vec4 vColor;
 varying vec2 vShape;
 
@@ -38,7 +40,9 @@ void main() {
   float radius = 0.5 * vShape.x;
   float alpha = 1.0 - smoothstep(radius - 0.5, radius + 0.5, far);
   vec3 tint = vColor.rgb;
-  if (vShape.y > 1.5) {
+  if (vShape.y > 2.5) {
+    alpha *= smoothstep(radius - 2.5, radius - 1.5, far);
+  } else if (vShape.y > 1.5) {
     // A square in the colour between two dark ones: seen on every picture.
     float inwards = radius - max(abs(place.x), abs(place.y));
     tint *= smoothstep(0.6, 1.4, inwards) * (1.0 - smoothstep(2.6, 3.4, inwards));
@@ -57,8 +61,12 @@ void main() {
   gl_FragColor = vec4(tint, vColor.a * alpha);
 }`;
 
+const COLUMNS = ['position', 'tint', 'look'];
+
 export class MarkSet {
   readonly points: Points<BufferGeometry, ShaderMaterial>;
+  /** Marks that there is room for. */
+  private room = 0;
 
   constructor(uniforms: ScreenUniforms) {
     const material = new ShaderMaterial({
@@ -73,21 +81,34 @@ export class MarkSet {
     this.points = new Points(new BufferGeometry(), material);
     this.points.frustumCulled = false;
     this.points.renderOrder = 11;
+    this.points.visible = false;
   }
 
   set(marks: Mark[]): void {
-    const geometry = new BufferGeometry();
-    geometry.setAttribute('position', new Float32BufferAttribute(marks.flatMap((mark) => mark.at), 3));
-    geometry.setAttribute('tint', new Float32BufferAttribute(marks.flatMap((mark) => screenColor(mark.color)), 3));
-    const look = marks.flatMap(({ size, opacity, shape }) => [size, opacity, shape === undefined ? 0 : shape === 'lamp' ? 1 : 2]);
-    geometry.setAttribute('look', new Float32BufferAttribute(look, 3));
-    this.points.geometry.dispose();
-    this.points.geometry = geometry;
+    if (marks.length > this.room) this.makeRoom(Math.max(16, 2 * marks.length));
+    const { geometry } = this.points;
+    geometry.setDrawRange(0, marks.length);
     this.points.visible = marks.length > 0;
+    if (marks.length === 0) return;
+    const [position, tint, look] = COLUMNS.map((name) => geometry.getAttribute(name)) as [BufferAttribute, BufferAttribute, BufferAttribute];
+    marks.forEach(({ at, color, size, opacity, shape }, row) => {
+      position.array.set(at, 3 * row);
+      tint.array.set(screenColor(color), 3 * row);
+      look.array.set([size, opacity, SHAPES.indexOf(shape ?? 'dot')], 3 * row);
+    });
+    for (const column of [position, tint, look]) column.needsUpdate = true;
   }
 
   dispose(): void {
     this.points.geometry.dispose();
     this.points.material.dispose();
+  }
+
+  private makeRoom(room: number): void {
+    const geometry = new BufferGeometry();
+    for (const name of COLUMNS) geometry.setAttribute(name, new BufferAttribute(new Float32Array(3 * room), 3));
+    this.points.geometry.dispose();
+    this.points.geometry = geometry;
+    this.room = room;
   }
 }

@@ -1,55 +1,50 @@
 /** Spheres and meshes, shaded softly from above, with a rim: a drawing, not a rendering. */
 
-import {
-  BufferGeometry,
-  Color,
-  DoubleSide,
-  EdgesGeometry,
-  Float32BufferAttribute,
-  FrontSide,
-  Group,
-  Mesh,
-  ShaderMaterial,
-  SphereGeometry,
-  Vector3,
-} from 'three';
+import { BufferAttribute, BufferGeometry, Color, DoubleSide, FrontSide, Group, Mesh, ShaderMaterial, Sphere, SphereGeometry, Vector3 } from 'three';
 import { displayed } from '../color';
-import type { Transfer, Vec3, ViewMesh, ViewScene, ViewSphere } from '../data';
+import type { ViewMesh, ViewScene, ViewSphere } from '../data';
 import type { Theme } from '../theme';
+import { creases } from './creases';
+import { boxOf } from './extent';
 import { type DrawnLine, LineSet, type ScreenUniforms, screenColor } from './line-set';
 
+/** Faces of meshes get their normal from the graphics card, so that none has to be computed for large ones. */
 const VERTEX = /* glsl */ `
 varying vec3 vNormal;
 varying vec3 vToEye;
-varying float vHeight;
-uniform vec3 up;
 
 void main() {
   vec4 place = modelViewMatrix * vec4(position, 1.0);
+  #ifdef ROUND
   vNormal = normalMatrix * normal;
+  #endif
   vToEye = -place.xyz;
-  vHeight = dot(normalize(normal), up);
   gl_Position = projectionMatrix * place;
 }`;
 
 const FRAGMENT = /* glsl */ `
 uniform vec3 color;
 uniform vec3 paper;
+uniform vec3 up;
 uniform float opacity;
-uniform float rim;
 varying vec3 vNormal;
 varying vec3 vToEye;
-varying float vHeight;
 
 void main() {
-  float facing = abs(dot(normalize(vNormal), normalize(vToEye)));
-  float height = gl_FrontFacing ? vHeight : -vHeight;
-  float light = 0.5 + 0.5 * height;
+  #ifdef ROUND
+  vec3 normal = normalize(vNormal);
+  float facing = abs(dot(normal, normalize(vToEye)));
+  float edge = pow(1.0 - facing, 3.0);
+  #else
+  vec3 normal = normalize(cross(dFdx(vToEye), dFdy(vToEye)));
+  normal *= sign(dot(normal, vToEye));
+  float edge = 0.0;
+  #endif
+  float light = 0.5 + 0.5 * dot(normal, mat3(viewMatrix) * up);
   // Some of the paper in everything: soft on a light page; on a dark one pale things would outshine the rays.
   float pale = min(color.r, min(color.g, color.b));
   vec3 soft = mix(color, paper, mix(0.28 + 0.38 * pale, 0.2, paper.g));
   vec3 shade = soft * (0.68 + 0.32 * light) + 0.07 * light * light;
-  float edge = rim * pow(1.0 - facing, 3.0);
   // Opaque things fade into the paper at their rim, clear ones stand out from it there.
   vec3 outline = opacity < 1.0 ? mix(color, vec3(1.0 - paper.g), 0.2) : mix(shade, paper, 0.5);
   vec3 tint = mix(shade, outline, edge);
@@ -57,105 +52,136 @@ void main() {
 }`;
 
 const MAX_FINE = 100;
-/** Edges between faces that meet at less than this are smooth, in degrees. */
-const CREASE = 25;
 /** Above, the edges of a mesh would be a web. */
 const MAX_EDGE_FACES = 5000;
 
+type Drawn = Mesh<BufferGeometry, ShaderMaterial>;
+
 export class Objects {
   readonly group = new Group();
-  private readonly materials: ShaderMaterial[] = [];
+  readonly spheres: Drawn[] = [];
+  meshes: Drawn[] = [];
+  private readonly fine = new SphereGeometry(1, 96, 64);
+  /** Many spheres are small ones. */
+  private readonly coarse = new SphereGeometry(1, 24, 16);
   private readonly edges: LineSet;
-  private readonly creases: [Vec3, Vec3][] = [];
+  private shown: ViewMesh[] = [];
+  private ink = '#000';
 
-  constructor(
-    scene: ViewScene,
-    private readonly transfer: Transfer,
-    uniforms: ScreenUniforms,
-  ) {
+  constructor(uniforms: ScreenUniforms) {
     // Over all surfaces, but under the picture on the image plane.
     this.edges = new LineSet(uniforms, 9);
-    const up = new Vector3(...scene.camera.up).normalize();
-    // Many spheres are small ones.
-    const round = scene.spheres.length <= MAX_FINE ? new SphereGeometry(1, 96, 64) : new SphereGeometry(1, 24, 16);
-    for (const sphere of scene.spheres) {
-      const mesh = new Mesh(round, this.material(sphere, up, FrontSide, 1));
-      mesh.position.set(...sphere.center);
-      mesh.scale.setScalar(sphere.radius);
-      this.add(mesh);
-    }
-    for (const mesh of scene.meshes) {
-      const flat = flatGeometry(mesh);
-      this.add(new Mesh(flat, this.material(mesh, up, DoubleSide, 0)));
-      if (mesh.faces.length <= 3 * MAX_EDGE_FACES) this.creases.push(...creases(flat));
-    }
     this.group.add(this.edges.group);
   }
 
-  setTheme(theme: Theme): void {
-    for (const material of this.materials) (material.uniforms.paper!.value as Color).fromArray(screenColor(theme.paper));
+  /** What is the same as before is kept. */
+  setScene(scene: ViewScene, theme: Theme): void {
+    const changed = this.setMeshes(scene.meshes);
+    this.setSpheres(scene.spheres);
+    const up = new Vector3(...scene.camera.up).normalize();
+    const paint = ({ material }: Drawn, { color, opacity }: ViewSphere | ViewMesh) => {
+      const opaque = opacity >= 1;
+      const { uniforms } = material;
+      (uniforms.color!.value as Color).fromArray(displayed(color, scene.transfer));
+      (uniforms.up!.value as Vector3).copy(up);
+      uniforms.opacity!.value = opacity;
+      material.transparent = !opaque;
+      material.depthWrite = opaque;
+    };
+    this.spheres.forEach((drawn, index) => paint(drawn, scene.spheres[index]!));
+    this.meshes.forEach((drawn, index) => paint(drawn, scene.meshes[index]!));
+    for (const drawn of [...this.spheres, ...this.meshes]) drawn.renderOrder = drawn.material.transparent ? 1 : 0;
+    this.setTheme(theme, changed);
+  }
+
+  setTheme(theme: Theme, edgesToo = true): void {
+    for (const { material } of [...this.spheres, ...this.meshes]) {
+      (material.uniforms.paper!.value as Color).fromArray(screenColor(theme.paper));
+    }
+    if (!edgesToo && theme.ink === this.ink) return;
+    this.ink = theme.ink;
     const edge = { color: theme.ink, width: 1, opacity: 0.32, open: false };
-    this.edges.set(this.creases.map(([from, to]): DrawnLine => ({ from, to, ...edge })));
+    const edged = this.shown.filter(({ faces }) => faces.length <= 3 * MAX_EDGE_FACES);
+    this.edges.set(edged.flatMap((mesh) => creases(mesh).map(([from, to]): DrawnLine => ({ from, to, ...edge }))));
   }
 
   dispose(): void {
     this.edges.dispose();
-    for (const material of this.materials) material.dispose();
-    for (const child of this.group.children) if (child instanceof Mesh) (child.geometry as BufferGeometry).dispose();
+    this.fine.dispose();
+    this.coarse.dispose();
+    for (const { material } of this.spheres) material.dispose();
+    for (const drawn of this.meshes) this.drop(drawn);
   }
 
-  private add(mesh: Mesh<BufferGeometry, ShaderMaterial>): void {
-    mesh.renderOrder = mesh.material.transparent ? 1 : 0;
-    this.group.add(mesh);
-  }
-
-  private material(of: ViewSphere | ViewMesh, up: Vector3, side: typeof FrontSide | typeof DoubleSide, rim: number): ShaderMaterial {
-    const opaque = of.opacity >= 1;
-    const material = new ShaderMaterial({
-      vertexShader: VERTEX,
-      fragmentShader: FRAGMENT,
-      uniforms: {
-        color: { value: new Color().fromArray(displayed(of.color, this.transfer)) },
-        paper: { value: new Color() },
-        opacity: { value: of.opacity },
-        rim: { value: rim },
-        up: { value: up },
-      },
-      side,
-      transparent: !opaque,
-      depthWrite: opaque,
-      // Edges lie in the faces, and must win.
-      polygonOffset: true,
-      polygonOffsetFactor: 1,
-      polygonOffsetUnits: 1,
+  private setSpheres(spheres: ViewSphere[]): void {
+    for (const { material } of this.spheres.slice(spheres.length)) material.dispose();
+    this.group.remove(...this.spheres.splice(spheres.length));
+    while (this.spheres.length < spheres.length) this.spheres.push(this.add(new Mesh(this.fine, surface(true))));
+    spheres.forEach(({ center, radius }, index) => {
+      const drawn = this.spheres[index]!;
+      drawn.geometry = spheres.length <= MAX_FINE ? this.fine : this.coarse;
+      drawn.position.set(...center);
+      drawn.scale.setScalar(radius);
     });
-    this.materials.push(material);
-    return material;
+  }
+
+  /** Are some of them, or are there, others than before? */
+  private setMeshes(meshes: ViewMesh[]): boolean {
+    const before = this.shown;
+    const kept = new Map(before.map((mesh, index) => [mesh, this.meshes[index]!]));
+    const find = (mesh: ViewMesh) => {
+      const same = [...kept.keys()].find(({ vertices, faces }) => vertices === mesh.vertices && faces === mesh.faces);
+      if (same === undefined) return undefined;
+      const drawn = kept.get(same)!;
+      kept.delete(same);
+      return drawn;
+    };
+    const found = meshes.map(find);
+    this.meshes = meshes.map((mesh, index) => found[index] ?? this.add(new Mesh(geometryOf(mesh), surface(false))));
+    for (const drawn of kept.values()) {
+      this.drop(drawn);
+      this.group.remove(drawn);
+    }
+    this.shown = meshes;
+    return kept.size > 0 || found.includes(undefined);
+  }
+
+  private add(drawn: Drawn): Drawn {
+    this.group.add(drawn);
+    return drawn;
+  }
+
+  private drop({ geometry, material }: Drawn): void {
+    geometry.dispose();
+    material.dispose();
   }
 }
 
-/** Each face with corners and a normal of its own. */
-export function flatGeometry({ vertices, faces }: ViewMesh): BufferGeometry {
-  const indexed = new BufferGeometry();
-  indexed.setAttribute('position', new Float32BufferAttribute(vertices, 3));
-  indexed.setIndex(faces);
-  const flat = indexed.toNonIndexed();
-  flat.computeVertexNormals();
-  return flat;
+function surface(round: boolean): ShaderMaterial {
+  return new ShaderMaterial({
+    vertexShader: VERTEX,
+    fragmentShader: FRAGMENT,
+    defines: round ? { ROUND: true } : {},
+    uniforms: {
+      color: { value: new Color() },
+      paper: { value: new Color() },
+      opacity: { value: 1 },
+      up: { value: new Vector3() },
+    },
+    side: round ? FrontSide : DoubleSide,
+    // Edges lie in the faces, and must win.
+    polygonOffset: true,
+    polygonOffsetFactor: 1,
+    polygonOffsetUnits: 1,
+  });
 }
 
-/** The edges of a mesh at which it is not smooth. */
-export function creases(flat: BufferGeometry): [Vec3, Vec3][] {
-  flat.computeBoundingSphere();
-  // three.js takes corners within 1e-4 for one: a millionth of the mesh, when it is as large as this.
-  const size = 100 / (flat.boundingSphere!.radius || 1);
-  const large = flat.clone().scale(size, size, size);
-  const edges = new EdgesGeometry(large, CREASE);
-  const points = edges.getAttribute('position');
-  const point = (index: number): Vec3 => [points.getX(index) / size, points.getY(index) / size, points.getZ(index) / size];
-  const found: [Vec3, Vec3][] = [];
-  for (let index = 0; index < points.count; index += 2) found.push([point(index), point(index + 1)]);
-  edges.dispose();
-  large.dispose();
-  return found;
+function geometryOf(mesh: ViewMesh): BufferGeometry {
+  const geometry = new BufferGeometry();
+  geometry.setAttribute('position', new BufferAttribute(new Float32Array(mesh.vertices), 3));
+  geometry.setIndex(new BufferAttribute(new Uint32Array(mesh.faces), 1));
+  // three.js would go through the vertices once more.
+  geometry.boundingBox = boxOf(mesh);
+  geometry.boundingSphere = geometry.boundingBox.getBoundingSphere(new Sphere());
+  return geometry;
 }

@@ -2,7 +2,7 @@
 
 import { Group } from 'three';
 import type { RayNode, Vec3 } from '../data';
-import { along, lineOpacity, lineWidth, rayLine, shadowLines, stepLine } from '../lines';
+import { lineOpacity, lineWidth, rayLine, shadowLines, stepLine } from '../lines';
 import type { TreeModel } from '../model';
 import type { Theme } from '../theme';
 import { type DrawnLine, LineSet, type ScreenUniforms } from './line-set';
@@ -14,6 +14,18 @@ export interface RayState {
   allShadows: boolean;
 }
 
+/** The rays of one sample, and where they are drawn. */
+export interface DrawnSample {
+  model: TreeModel;
+  /** Those of the model, in the drawing's own unit. */
+  nodes: RayNode[];
+  /** The ids of the rays that are shown even if they are not selected. */
+  drawn: number[];
+  /** How far a ray is drawn that leaves the scene. */
+  reach: number;
+  eye: Vec3;
+}
+
 /** Of rays beside the way to the selected one. */
 const DIMMED = 0.35;
 
@@ -22,87 +34,101 @@ export class Rays {
   private readonly lines: LineSet;
   private readonly marks: MarkSet;
 
-  /** `nodes` are those of the model where they are drawn; `drawn` the ids of the rays that are shown unless they are selected. */
-  constructor(
-    private readonly model: TreeModel,
-    private readonly nodes: RayNode[],
-    private readonly drawn: number[],
-    private readonly reach: number,
-    private readonly eye: Vec3,
-    uniforms: ScreenUniforms,
-  ) {
+  constructor(uniforms: ScreenUniforms) {
     this.lines = new LineSet(uniforms);
     this.marks = new MarkSet(uniforms);
     this.group.add(this.lines.group, this.marks.points);
   }
 
-  show(state: RayState, theme: Theme): void {
-    const way = new Set(state.selected === null ? [] : this.model.path(state.selected));
-    const ids = [...new Set([...this.drawn, ...way])];
-    // The important ones are drawn last, over the others.
-    ids.sort((a, b) => Number(way.has(a)) - Number(way.has(b)) || this.model.share(a) - this.model.share(b));
-    const dim = (id: number) => (way.size === 0 || way.has(id) ? 1 : DIMMED);
-    const shaded = state.allShadows ? ids : ids.filter((id) => id === state.selected);
-    this.lines.set([
-      ...[state.selected, state.hovered].flatMap((id) => (id === null ? [] : [this.halo(id, id === state.selected, theme)])),
-      ...shaded.flatMap((id) => this.shadows(id, dim(id), theme)),
-      ...this.model.roots.flatMap((id) => this.fromEye(id, dim(id), theme)),
-      ...ids.flatMap((id) => this.step(id, dim(id), theme)),
-      ...ids.map((id) => this.ray(id, id === state.selected, dim(id), theme)),
-      ...(state.selected === null ? [] : this.normal(state.selected, theme)),
-    ]);
-    this.marks.set(ids.flatMap((id) => this.end(id, id === state.selected, dim(id), theme)));
+  show(sample: DrawnSample | null, state: RayState, theme: Theme): void {
+    const { lines, marks } = sample === null ? { lines: [], marks: [] } : new Look(sample, state, theme);
+    this.lines.set(lines);
+    this.marks.set(marks);
   }
 
   dispose(): void {
     this.lines.dispose();
     this.marks.dispose();
   }
+}
 
-  /** In the models whose rays begin at the image plane, a thin line shows where they come from. */
-  private fromEye(id: number, dim: number, theme: Theme): DrawnLine[] {
-    const { origin } = this.nodes[id]!;
-    if (origin.every((x, axis) => x === this.eye[axis])) return [];
-    return [{ from: this.eye, to: origin, open: false, color: theme.rays.camera, width: 1.2, opacity: 0.8 * dim }];
+/** What the rays look like at a time. */
+class Look {
+  readonly lines: DrawnLine[];
+  readonly marks: Mark[];
+
+  constructor(
+    private readonly sample: DrawnSample,
+    { selected, hovered, allShadows }: RayState,
+    private readonly theme: Theme,
+  ) {
+    const { model, drawn } = sample;
+    const way = new Set(selected === null ? [] : model.path(selected));
+    const ids = [...new Set([...drawn, ...way])];
+    // The important ones are drawn last, over the others.
+    ids.sort((a, b) => Number(way.has(a)) - Number(way.has(b)) || model.share(a) - model.share(b));
+    const dim = (id: number) => (way.size === 0 || way.has(id) ? 1 : DIMMED);
+    const shaded = allShadows ? ids : ids.filter((id) => id === selected);
+    this.lines = [
+      ...[selected, hovered].flatMap((id) => (id === null ? [] : [this.halo(id, id === selected)])),
+      ...shaded.flatMap((id) => this.shadows(id, dim(id))),
+      ...model.roots.flatMap((id) => this.fromEye(id, dim(id))),
+      ...ids.flatMap((id) => this.step(id, dim(id))),
+      ...ids.map((id) => this.ray(id, id === selected, dim(id))),
+    ];
+    this.marks = ids.flatMap((id) => this.end(id, id === selected, dim(id)));
   }
 
-  private ray(id: number, selected: boolean, dim: number, theme: Theme): DrawnLine {
-    const node = this.nodes[id]!;
-    const share = this.model.share(id);
+  /** In the models whose rays begin at the image plane, a thin line shows where they come from. */
+  private fromEye(id: number, dim: number): DrawnLine[] {
+    const { origin } = this.node(id);
+    const { eye } = this.sample;
+    if (origin.every((x, axis) => x === eye[axis])) return [];
+    return [{ from: eye, to: origin, open: false, color: this.theme.rays.camera, width: 1.2, opacity: 0.8 * dim }];
+  }
+
+  private ray(id: number, selected: boolean, dim: number): DrawnLine {
+    const node = this.node(id);
+    const share = this.share(id);
     const width = lineWidth(share) + (selected ? 1 : 0);
     const opacity = selected ? 1 : dim * lineOpacity(share);
-    return { ...rayLine(node, this.reach), color: theme.rays[node.kind], width, opacity, arrow: true };
+    return { ...rayLine(node, this.sample.reach), color: this.color(node), width, opacity, arrow: true };
   }
 
   /** What a model of light goes through at once is drawn as a way inside. */
-  private step(id: number, dim: number, theme: Theme): DrawnLine[] {
-    const node = this.nodes[id]!;
-    const line = node.parent === null ? null : stepLine(this.nodes[node.parent]!, node);
-    const share = this.model.share(id);
-    return line === null ? [] : [{ ...line, color: theme.rays.inside, width: lineWidth(share), opacity: dim * lineOpacity(share) }];
+  private step(id: number, dim: number): DrawnLine[] {
+    const node = this.node(id);
+    const line = node.parent === null ? null : stepLine(this.node(node.parent), node);
+    const share = this.share(id);
+    return line === null ? [] : [{ ...line, color: this.theme.rays.inside, width: lineWidth(share), opacity: dim * lineOpacity(share) }];
   }
 
-  private halo(id: number, selected: boolean, theme: Theme): DrawnLine {
-    const width = lineWidth(this.model.share(id)) + 10;
-    return { ...rayLine(this.nodes[id]!, this.reach), color: theme.accent, width, opacity: selected ? 0.4 : 0.25 };
+  private halo(id: number, selected: boolean): DrawnLine {
+    const width = lineWidth(this.share(id)) + 10;
+    return { ...rayLine(this.node(id), this.sample.reach), color: this.theme.accent, width, opacity: selected ? 0.4 : 0.25 };
   }
 
-  private shadows(id: number, dim: number, theme: Theme): DrawnLine[] {
-    const look = { color: theme.rays.shadow, width: 1.5, opacity: 0.9 * dim };
-    return shadowLines(this.nodes[id]!, this.reach).map((line) => ({ ...line, ...look, dashed: line.blocked }));
+  private shadows(id: number, dim: number): DrawnLine[] {
+    const look = { color: this.theme.rays.shadow, width: 1.5, opacity: 0.9 * dim };
+    return shadowLines(this.node(id), this.sample.reach).map((line) => ({ ...line, ...look, dashed: line.blocked }));
   }
 
-  private normal(id: number, theme: Theme): DrawnLine[] {
-    const { hit } = this.nodes[id]!;
-    if (hit === null) return [];
-    const to = along(hit.point, hit.normal, this.reach / 6);
-    return [{ from: hit.point, to, open: false, color: theme.ink, width: 1.2, opacity: 0.8 }];
-  }
-
-  private end(id: number, selected: boolean, dim: number, theme: Theme): Mark[] {
-    const node = this.nodes[id]!;
+  private end(id: number, selected: boolean, dim: number): Mark[] {
+    const node = this.node(id);
     if (node.hit === null) return [];
-    const size = selected ? 8 : 3 + lineWidth(this.model.share(id));
-    return [{ at: node.hit.point, color: selected ? theme.ink : theme.rays[node.kind], size, opacity: dim }];
+    const size = selected ? 8 : 3 + lineWidth(this.share(id));
+    return [{ at: node.hit.point, color: selected ? this.theme.ink : this.color(node), size, opacity: dim }];
+  }
+
+  private color(node: RayNode): string {
+    return this.theme.rays[node.kind];
+  }
+
+  private node(id: number): RayNode {
+    return this.sample.nodes[id]!;
+  }
+
+  private share(id: number): number {
+    return this.sample.model.share(id);
   }
 }

@@ -27,25 +27,33 @@ export class Stage {
   /** When a person moves the eye. */
   onMove: () => void = () => {};
   private readonly renderer: WebGLRenderer;
-  private readonly controls: OrbitControls;
-  private readonly flight: Flight;
+  private controls!: OrbitControls;
+  private flight!: Flight;
   private readonly resizes = new ResizeObserver(() => this.resize());
   private readonly calm = window.matchMedia('(prefers-reduced-motion: reduce)');
   private frame = 0;
   private above: HTMLElement | null = null;
   private below: HTMLElement | null = null;
 
-  /** Throws where there is no WebGL. `radius` is that of the whole drawing. */
+  /** Throws where there is no WebGL. For the rest see `setSpace`. */
   constructor(up: Vector3, radius: number) {
     this.renderer = new WebGLRenderer({ canvas: this.canvas, antialias: true, alpha: true });
     this.renderer.setClearColor(0, 0);
+    this.canvas.addEventListener('wheel', (event) => this.keepPageScrolling(event), { capture: true });
+    this.canvas.addEventListener('keydown', (event) => this.onKey(event));
+    this.resizes.observe(this.canvas);
+    this.setSpace(up, radius);
+  }
+
+  /** What is up, and the radius of the whole drawing. A viewpoint should be shown next. */
+  setSpace(up: Vector3, radius: number): void {
     this.camera.up.copy(up);
     // A near plane much nearer would leave the depth buffer too few steps.
     this.camera.near = radius / 400;
     this.camera.far = radius * 100;
     this.uniforms.near.value = this.camera.near;
-    this.canvas.addEventListener('wheel', (event) => this.keepPageScrolling(event), { capture: true });
-    this.canvas.addEventListener('keydown', (event) => this.onKey(event));
+    // Controls look at what is up only once.
+    (this.controls as OrbitControls | undefined)?.dispose();
     this.controls = new OrbitControls(this.camera, this.canvas);
     this.controls.enableDamping = !this.calm.matches;
     this.controls.dampingFactor = 0.12;
@@ -57,7 +65,6 @@ export class Stage {
       this.onMove();
     });
     this.flight = new Flight(this.camera, this.controls);
-    this.resizes.observe(this.canvas);
   }
 
   /** Of the part that is free. */

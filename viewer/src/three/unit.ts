@@ -3,7 +3,7 @@
  * moves than a thousandth, whatever a scene is measured in.
  */
 
-import type { RayNode, Vec3, ViewScene } from '../data';
+import type { Numbers, RayNode, Vec3, ViewScene } from '../data';
 
 /** By what to multiply so that a radius comes near 1: a power of two, which loses no digit. */
 export function unitFor(radius: number): number {
@@ -17,7 +17,7 @@ export function scaledScene(scene: ViewScene, factor: number): ViewScene {
   return {
     ...scene,
     spheres: scene.spheres.map((sphere) => ({ ...sphere, center: point(sphere.center), radius: factor * sphere.radius })),
-    meshes: scene.meshes.map((mesh) => ({ ...mesh, vertices: mesh.vertices.map((value) => factor * value) })),
+    meshes: scene.meshes.map((mesh) => ({ ...mesh, vertices: scaledVertices(mesh.vertices, factor) })),
     camera: { eye: point(eye), corners: [point(leftBottom), point(rightBottom), point(leftTop), point(rightTop)], up },
     lights: scene.lights.map((light) => ({ ...light, position: light.position && point(light.position) })),
   };
@@ -38,6 +38,18 @@ export function scaledNodes(nodes: RayNode[], factor: number): RayNode[] {
       })),
     },
   }));
+}
+
+const known = new WeakMap<Numbers, { factor: number; vertices: Float64Array }>();
+
+/** The same list again for the same vertices: what is made of them need not be made again. */
+function scaledVertices(given: Numbers, factor: number): Float64Array {
+  const before = known.get(given);
+  if (before?.factor === factor) return before.vertices;
+  const vertices = new Float64Array(given);
+  for (let index = 0; index < vertices.length; index++) vertices[index]! *= factor;
+  known.set(given, { factor, vertices });
+  return vertices;
 }
 
 function scaled([x, y, z]: Vec3, factor: number): Vec3 {

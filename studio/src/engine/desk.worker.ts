@@ -1,0 +1,104 @@
+/** Answers questions about the scene, and puts the picture together from what the renderers have made. */
+
+import type { Session } from 'snell-wasm';
+import type { Answers, Finding, FromDesk, Geometry, PictureOptions, Question, Revision, Sighting, ToDesk } from './protocol';
+import { brokenBy, changed, findingsOf, start } from './session';
+
+let session: Session | null = null;
+/** The picture that is gathered. */
+let picture = -1;
+/** Those that the page has been told of, and still needs. */
+let geometry = new Set<string>();
+
+self.onmessage = ({ data }: MessageEvent<ToDesk>) => {
+  try {
+    hear(data);
+  } catch (error) {
+    tell({ tell: 'broken', message: brokenBy(error) });
+  }
+};
+
+function hear(message: ToDesk): void {
+  switch (message.do) {
+    case 'start':
+      return start(message.module);
+    case 'gather':
+      return gather(message.picture, message.options);
+    case 'part':
+      if (message.picture === picture) {
+        const { x, y, width, height, values, finished } = message.part;
+        session!.put(x, y, width, height, values, finished);
+      }
+      return;
+    case 'ask':
+      return reply(message.id, message.question);
+  }
+}
+
+function gather(number: number, options: PictureOptions): void {
+  picture = -1;
+  session!.gather(JSON.stringify(options));
+  picture = number;
+}
+
+function reply(id: number, question: Question): void {
+  try {
+    tell({ tell: 'answer', id, answer: answer(question) });
+  } catch (error) {
+    const findings = findingsOf(error);
+    if (findings === null) throw error;
+    tell({ tell: 'refusal', id, findings });
+  }
+}
+
+function answer(question: Question): Answers[Question['ask']] {
+  switch (question.ask) {
+    case 'change':
+      session = changed(session, question.change);
+      picture = -1;
+      return revision(session);
+    case 'explain':
+      return JSON.parse(session!.explain(...question.pixel)) as Answers['explain'];
+    case 'find': {
+      const seen = session!.find(question.object);
+      const found: Sighting = { paths: JSON.parse(seen.paths) as Sighting['paths'], mask: seen.mask };
+      seen.free();
+      return found;
+    }
+    case 'values':
+      return session!.values(question.x, question.y, question.width, question.height);
+    case 'outcome':
+      return { sha256: session!.film_sha256 ?? '', warnings: JSON.parse(session!.validate()) as Finding[] };
+    case 'png':
+      return session!.png() as Uint8Array<ArrayBuffer>;
+    case 'exr':
+      return session!.exr() as Uint8Array<ArrayBuffer>;
+  }
+}
+
+function revision(session: Session): Revision {
+  const [width, height] = session.size as unknown as [number, number];
+  return {
+    text: session.text,
+    scene: JSON.parse(session.scene()) as Revision['scene'],
+    ...sceneOf(session),
+    warnings: JSON.parse(session.validate()) as Finding[],
+    size: [width, height],
+  };
+}
+
+/** Corners and faces come as arrays of numbers, which are handed over much faster than JSON, and only once. */
+function sceneOf(session: Session): Pick<Revision, 'view' | 'geometry'> {
+  const view = JSON.parse(session.view()) as Revision['view'];
+  const known = geometry;
+  geometry = new Set(view.meshes.map((mesh) => mesh.geometry));
+  const fresh = new Map<string, Geometry>();
+  view.meshes.forEach((mesh, index) => {
+    if (!known.has(mesh.geometry) && !fresh.has(mesh.geometry)) fresh.set(mesh.geometry, session.view_mesh(index) as Geometry);
+  });
+  return { view, geometry: fresh };
+}
+
+function tell(message: FromDesk): void {
+  self.postMessage(message);
+}

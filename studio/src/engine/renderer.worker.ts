@@ -1,0 +1,142 @@
+/** Renders a share of the picture, a few milliseconds at a time, so that a change is never far away. */
+
+import type { Session } from 'snell-wasm';
+import type { FromRenderer, Part, Patch, PictureOptions, ToRenderer } from './protocol';
+import { brokenBy, changed, findingsOf, start } from './session';
+
+/** Milliseconds that a slice takes. */
+const SLICE = 12;
+/** Side of the pieces in which shares are dealt out, in pixels: that of the engine. */
+const PIECE = 64;
+
+let session: Session | null = null;
+let share: [number, number] = [0, 1];
+let work: Work | null = null;
+let waiting = false;
+
+/** Comes back to the next slice after all messages that have arrived. */
+const turn = new MessageChannel();
+turn.port1.onmessage = () => {
+  waiting = false;
+  guarded(() => work?.slice());
+};
+
+self.onmessage = ({ data }: MessageEvent<ToRenderer>) => guarded(() => hear(data));
+
+function hear(message: ToRenderer): void {
+  switch (message.do) {
+    case 'start':
+      start(message.module);
+      share = message.share;
+      break;
+    case 'change':
+      change(message.change);
+      break;
+    case 'render':
+      work = new Work(message.picture, message.options, message.coarsest);
+      work.goOn();
+      break;
+    case 'stop':
+      work = null;
+      break;
+    case 'collect':
+      if (work?.picture === message.picture) work.handOver();
+      tell({ tell: 'collected', picture: message.picture });
+  }
+}
+
+/** What is refused the desk tells, in the same words. */
+function change(change: Parameters<typeof changed>[1]): void {
+  try {
+    session = changed(session, change);
+    work = null;
+  } catch (error) {
+    if (findingsOf(error) === null) throw error;
+  }
+}
+
+class Work {
+  private covered = false;
+  private readonly pieces = new Map<string, { rect: Rect; finished: boolean }>();
+
+  constructor(
+    readonly picture: number,
+    options: PictureOptions,
+    private readonly coarsest: number,
+  ) {
+    session!.begin(JSON.stringify({ ...options, coarsest, share }));
+  }
+
+  slice(): void {
+    const steps = session!.step(SLICE);
+    const touched = new Map<string, Rect>();
+    let finer = false;
+    for (let at = 0; at < steps.length; at += 5) {
+      const piece = this.pieceAt(steps[at]!, steps[at + 1]!);
+      touched.set(`${piece.x},${piece.y}`, piece);
+      finer ||= steps[at + 4]! < this.coarsest;
+    }
+    for (const [key, rect] of touched) this.pieces.set(key, { rect, finished: false });
+    // The coarsest pass is over all of the share before the next one begins.
+    this.covered ||= finer || this.coarsest === 1 || session!.is_finished;
+    this.show([...touched.values()]);
+    if (session!.is_finished) {
+      this.handOver();
+      tell({ tell: 'finished', picture: this.picture });
+    } else {
+      this.goOn();
+    }
+  }
+
+  goOn(): void {
+    if (waiting) return;
+    waiting = true;
+    turn.port2.postMessage(null);
+  }
+
+  handOver(): void {
+    const finished = session!.is_finished;
+    for (const { rect } of this.pieces.values()) {
+      const values = session!.values(rect.x, rect.y, rect.width, rect.height);
+      const part: Part = { ...rect, values, finished };
+      tell({ tell: 'part', picture: this.picture, part }, [values.buffer as ArrayBuffer]);
+    }
+  }
+
+  private show(rects: Rect[]): void {
+    const patches = rects.map((rect): Patch => {
+      const bytes = session!.rgba(rect.x, rect.y, rect.width, rect.height) as Uint8ClampedArray<ArrayBuffer>;
+      return { ...rect, rgba: bytes };
+    });
+    const { pixels, rays } = JSON.parse(session!.progress()) as { pixels: number; rays: number };
+    const told: FromRenderer = { tell: 'patches', picture: this.picture, patches, covered: this.covered, pixels, rays };
+    tell(told, patches.map(({ rgba }) => rgba.buffer));
+  }
+
+  private pieceAt(x: number, y: number): Rect {
+    const [width, height] = session!.size as unknown as [number, number];
+    const [left, top] = [x - (x % PIECE), y - (y % PIECE)];
+    return { x: left, y: top, width: Math.min(PIECE, width - left), height: Math.min(PIECE, height - top) };
+  }
+}
+
+interface Rect {
+  x: number;
+  y: number;
+  width: number;
+  height: number;
+}
+
+function guarded(act: () => void): void {
+  try {
+    act();
+  } catch (error) {
+    work = null;
+    const findings = findingsOf(error);
+    tell({ tell: 'broken', message: findings ? findings.map(({ message }) => message).join('\n') : brokenBy(error) });
+  }
+}
+
+function tell(message: FromRenderer, moved: Transferable[] = []): void {
+  self.postMessage(message, { transfer: moved });
+}

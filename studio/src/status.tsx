@@ -1,0 +1,83 @@
+/** How far the picture is, whether its bits are those of the command line, and what is wrong or odd. */
+
+import type { Finding } from './engine/protocol';
+import type { Store } from './store';
+
+export function Status({ store }: { store: Store }) {
+  const { pixels, total, rays, time } = store.progress.value;
+  const outcome = store.outcome.value;
+  const [width, height] = store.revision.value?.size ?? [0, 0];
+  const refused = store.refused.value;
+  const warnings = store.warnings.value;
+  return (
+    <footer class="status">
+      {refused.length > 0 && (
+        <div class="refused" role="alert">
+          <Findings findings={refused} />
+          <button type="button" class="plain" aria-label="Close this message" onClick={() => (store.refused.value = [])}>
+            ✕
+          </button>
+        </div>
+      )}
+      <div class="line">
+        <span>
+          {width} × {height}
+        </span>
+        {outcome === null && total > 0 ? (
+          <>
+            <progress value={pixels} max={total} aria-label="Progress of the picture" />
+            <button type="button" class="plain" onClick={() => (store.stopped.value ? store.render() : store.stop())}>
+              {store.stopped.value ? 'Go on' : 'Stop'}
+            </button>
+          </>
+        ) : (
+          <span>
+            {(time / 1000).toFixed(2)} s · {count(rays)} rays
+          </span>
+        )}
+        {outcome && <Hash sha256={outcome.sha256} />}
+        {warnings.length > 0 && (
+          <details class="warnings">
+            <summary>
+              {warnings.length} {warnings.length === 1 ? 'note' : 'notes'}
+            </summary>
+            <Findings findings={warnings} />
+          </details>
+        )}
+        {store.busy.value && (
+          <span class="busy" role="status">
+            {store.busy.value} <button type="button" class="plain" onClick={() => store.cancel()}>Cancel</button>
+          </span>
+        )}
+      </div>
+    </footer>
+  );
+}
+
+function Hash({ sha256 }: { sha256: string }) {
+  return (
+    <span class="hash" title={`SHA-256 of the numbers of this picture: ${sha256}`}>
+      SHA-256 <code>{sha256.slice(0, 12)}…</code>
+    </span>
+  );
+}
+
+export function Findings({ findings }: { findings: Finding[] }) {
+  return (
+    <ul class="findings">
+      {findings.map(({ message, help, place, code }, at) => (
+        <li key={at}>
+          {code && <b>{code} </b>}
+          {place && `Line ${place.line}: `}
+          {message}
+          {help && <span class="quiet"> {help}</span>}
+        </li>
+      ))}
+    </ul>
+  );
+}
+
+function count(value: number): string {
+  if (value < 1e4) return String(value);
+  return value < 1e6 ? `${(value / 1e3).toFixed(0)} thousand` : `${(value / 1e6).toFixed(1)} million`;
+}

@@ -1,0 +1,352 @@
+/** What the studio shows, and all that can be done to it. Views read the signals and call the methods; they hold no scene of their own. */
+
+import { batch, computed, signal } from '@preact/signals';
+import type { RayTreeDocument } from 'snell-viewer';
+import { Cancelled, Engine, Refusal } from './engine/engine';
+import type { Answers, Change, Edit, Finding, Given, PictureOptions, Revision, Sighting } from './engine/protocol';
+import { History } from './history';
+import { Surface } from './picture/surface';
+import { objectsOf, type SceneObject } from './scene/objects';
+
+export type Pixel = [number, number];
+
+/** What was opened. Two of the same name are not the same. */
+export interface Base {
+  name: string;
+  given: Given;
+}
+
+export interface Progress {
+  pixels: number;
+  total: number;
+  rays: number;
+  /** Milliseconds since the picture was begun. */
+  time: number;
+}
+
+/** Another picture under the one that is shown, for a slider to lay open: with other options, or as it was. */
+export interface Comparison {
+  label: string;
+  surface: Surface;
+  options: PictureOptions | null;
+}
+
+/** How an edit stands in the history. */
+export interface EditOptions {
+  label: string;
+  /** Edits of one group are one step: a drag, a slider. */
+  group?: string;
+}
+
+type Step = { change: Change; label: string; group: string | null; base: Base | null; done: () => void; failed: (error: Error) => void };
+
+/** Milliseconds after which a change does not wait any longer for the picture of the one before. */
+const PATIENCE = 400;
+
+export class Store {
+  /** The scene that is shown; nothing before the first one. */
+  readonly revision = signal<Revision | null>(null);
+  readonly base = signal<Base | null>(null);
+  /** Why the last change was refused; the scene is as it was before. */
+  readonly refused = signal<Finding[]>([]);
+  /** What takes longer than a moment, for people who wait. */
+  readonly busy = signal<string | null>('Loading the engine …');
+  readonly broken = signal<string | null>(null);
+  readonly progress = signal<Progress>({ pixels: 0, total: 0, rays: 0, time: 0 });
+  /** Of the finished picture. */
+  readonly outcome = signal<Answers['outcome'] | null>(null);
+  readonly stopped = signal(false);
+  /** Counts up whenever the picture on the surface has changed. */
+  readonly frame = signal(0);
+  readonly hovered = signal<Pixel | null>(null);
+  readonly pinned = signal<Pixel | null>(null);
+  /** Of the pixel that is pinned, or else under the pointer. */
+  readonly tree = signal<RayTreeDocument | null>(null);
+  readonly selectedName = signal<string | null>(null);
+  /** What the handles of the selected object do, and the step that they snap to. */
+  readonly handles = signal<'move' | 'turn' | 'scale'>('move');
+  readonly snap = signal<number | null>(null);
+  readonly sighting = signal<(Sighting & { object: string }) | null>(null);
+  readonly comparison = signal<Comparison | null>(null);
+  readonly undoLabel = signal<string | null>(null);
+  readonly redoLabel = signal<string | null>(null);
+
+  readonly objects = computed(() => (this.revision.value ? objectsOf(this.revision.value.scene) : []));
+  readonly selected = computed(() => this.objects.value.find(({ name }) => name === this.selectedName.value) ?? null);
+  readonly warnings = computed(() => this.outcome.value?.warnings ?? this.revision.value?.warnings ?? []);
+  readonly asked = computed(() => this.pinned.value ?? this.hovered.value);
+
+  readonly surface = new Surface();
+  /** Where what is rendered goes. */
+  private target = this.surface;
+  readonly engine: Engine;
+  private readonly history = new History<Base>();
+  private readonly steps: Step[] = [];
+  private running = false;
+  private covered: (() => void) | null = null;
+  private begun = 0;
+  private readonly question = { number: 0, asking: false };
+
+  constructor(threads?: number) {
+    this.engine = new Engine(
+      {
+        patches: (patches, covered) => {
+          if (this.target.put(patches, covered)) this.frame.value++;
+          if (covered) this.covered?.();
+        },
+        progress: (pixels, rays) => {
+          if (this.target !== this.surface) return;
+          const [width, height] = this.revision.value!.size;
+          this.progress.value = { pixels, rays, total: width * height, time: performance.now() - this.begun };
+        },
+        finished: (outcome) => {
+          if (this.target !== this.surface) return;
+          this.outcome.value = outcome;
+          this.renderComparison();
+        },
+        broken: (message) => void this.recover(message),
+      },
+      threads,
+    );
+  }
+
+  /** Starts the engine. */
+  async start(): Promise<void> {
+    await this.engine.start();
+    this.busy.value = null;
+  }
+
+  /** Opens a scene in place of the one that is shown. Rejects with a `Refusal`, and then that one stays. */
+  open(base: Base, label = `open ${base.name}`): Promise<void> {
+    return this.enqueue({ change: { open: base.given }, label, group: null, base });
+  }
+
+  /** Changes values of the scene. What is refused is told by `refused`. */
+  edit(edits: Edit[], { label, group = undefined }: EditOptions): void {
+    const last = this.steps.at(-1);
+    // Of a drag only the newest place counts.
+    if (last && group !== undefined && last.group === group && 'edit' in last.change) {
+      const changed = new Map([...last.change.edit, ...edits]);
+      last.change = { edit: [...changed] };
+      return;
+    }
+    if (edits.length > 0) this.enqueue({ change: { edit: edits }, label, group: group ?? null, base: null }).catch(() => {});
+  }
+
+  /** The next edit is a step of its own, even if it is of the same group. */
+  endGroup(): void {
+    this.history.endGroup();
+  }
+
+  /** Takes the text that a person has written. */
+  revise(text: string): void {
+    const step = this.steps.at(-1);
+    if (step && 'revise' in step.change) step.change = { revise: text };
+    else this.enqueue({ change: { revise: text }, label: 'edit the text', group: 'text', base: null }).catch(() => {});
+  }
+
+  undo(): void {
+    void this.travel(-1);
+  }
+
+  redo(): void {
+    void this.travel(1);
+  }
+
+  /** Ends the picture as it is. */
+  stop(): void {
+    this.engine.stop();
+    this.stopped.value = true;
+  }
+
+  /** Renders the picture that is shown from the start. */
+  render(): void {
+    const { revision } = this;
+    if (revision.value === null) return;
+    this.target = this.surface;
+    this.surface.begin(...revision.value.size);
+    this.outcome.value = null;
+    this.stopped.value = false;
+    this.begun = performance.now();
+    this.engine.render();
+  }
+
+  /** Lays the picture beside itself with other options, beside itself as it is now, or beside nothing. */
+  compare(label: string | null, options: PictureOptions | null = null): void {
+    if (label === null) {
+      this.comparison.value = null;
+      if (this.target !== this.surface) this.render();
+      return;
+    }
+    const surface = new Surface();
+    if (options === null) surface.copy(this.surface);
+    this.comparison.value = { label, surface, options };
+    if (this.outcome.value !== null) this.renderComparison();
+  }
+
+  private renderComparison(): void {
+    const { value: comparison } = this.comparison;
+    if (comparison?.options == null) return;
+    this.target = comparison.surface;
+    comparison.surface.begin(...this.revision.value!.size);
+    this.engine.render(comparison.options);
+  }
+
+  /** Why a pixel has its colour: pinned, until another one is or none. */
+  pin(pixel: Pixel | null): void {
+    this.pinned.value = pixel;
+    this.explain();
+  }
+
+  hover(pixel: Pixel | null): void {
+    const before = this.hovered.value;
+    if (pixel === before || (pixel && before && pixel[0] === before[0] && pixel[1] === before[1])) return;
+    this.hovered.value = pixel;
+    if (this.pinned.value === null) this.explain();
+  }
+
+  select(object: SceneObject | string | null): void {
+    this.selectedName.value = object === null || typeof object === 'string' ? object : object.name;
+  }
+
+  async find(object: string | null): Promise<void> {
+    this.sighting.value = null;
+    if (object === null) return;
+    this.busy.value = `Looking for ${object} in every pixel …`;
+    try {
+      this.sighting.value = { ...(await this.engine.ask({ ask: 'find', object })), object };
+    } catch (error) {
+      this.tell(error);
+    } finally {
+      this.busy.value = null;
+    }
+  }
+
+  /** Ends whatever takes long: the engine is started anew with the scene as it was. */
+  async cancel(): Promise<void> {
+    await this.recover(null);
+  }
+
+  private enqueue(step: Omit<Step, 'done' | 'failed'>): Promise<void> {
+    return new Promise((done, failed) => {
+      this.steps.push({ ...step, done, failed });
+      if (!this.running) void this.run();
+    });
+  }
+
+  private async run(): Promise<void> {
+    this.running = true;
+    for (let step = this.steps.shift(); step !== undefined; step = this.steps.shift()) {
+      const slow = setTimeout(() => (this.busy.value = 'Reading the scene …'), 150);
+      try {
+        const revision = await this.engine.change(step.change);
+        this.show(revision, step);
+        step.done();
+        await this.firstPass();
+      } catch (error) {
+        this.tell(error);
+        step.failed(error as Error);
+      } finally {
+        clearTimeout(slow);
+        this.busy.value = null;
+      }
+    }
+    this.running = false;
+  }
+
+  private show(revision: Revision, step: Pick<Step, 'base' | 'label' | 'group'>): void {
+    batch(() => {
+      const base = step.base ?? this.base.value!;
+      this.refused.value = [];
+      this.sighting.value = null;
+      this.base.value = base;
+      this.revision.value = revision;
+      this.history.record({ base, text: revision.text, label: step.label }, step.group);
+      this.labels();
+      const [width, height] = revision.size;
+      if (this.pinned.value && (this.pinned.value[0] >= width || this.pinned.value[1] >= height)) this.pinned.value = null;
+      this.render();
+    });
+    this.explain();
+  }
+
+  /** One picture after the other: a drag that is faster than they come waits for each, so that it is seen to move. */
+  private firstPass(): Promise<void> {
+    return new Promise((done) => {
+      const late = setTimeout(done, PATIENCE);
+      this.covered = () => {
+        clearTimeout(late);
+        this.covered = null;
+        done();
+      };
+    });
+  }
+
+  private async travel(steps: -1 | 1): Promise<void> {
+    const version = this.history.peek(steps);
+    if (version === undefined || this.running) return;
+    this.running = true;
+    try {
+      const stays = version.base === this.base.value;
+      let revision = stays ? null : await this.engine.change({ open: version.base.given });
+      if (revision?.text !== version.text) revision = await this.engine.change({ revise: version.text });
+      this.history.move(steps);
+      this.show(revision, { base: version.base, label: version.label, group: null });
+    } catch (error) {
+      this.tell(error);
+    }
+    this.running = false;
+    if (this.steps.length > 0) void this.run();
+  }
+
+  private labels(): void {
+    this.undoLabel.value = this.history.undoLabel;
+    this.redoLabel.value = this.history.redoLabel;
+  }
+
+  /** The newest question wins; while one is answered only the last of the others is kept. */
+  private explain(): void {
+    this.question.number++;
+    if (!this.question.asking) void this.answer();
+  }
+
+  private async answer(): Promise<void> {
+    const { question } = this;
+    question.asking = true;
+    for (let answered = 0; answered !== question.number; ) {
+      answered = question.number;
+      const pixel = this.asked.value;
+      try {
+        const tree = pixel && this.revision.value ? await this.engine.ask({ ask: 'explain', pixel }) : null;
+        if (answered === question.number || tree !== null) this.tree.value = tree;
+      } catch (error) {
+        this.tree.value = null;
+        this.tell(error);
+      }
+    }
+    question.asking = false;
+  }
+
+  private tell(error: unknown): void {
+    if (error instanceof Refusal) this.refused.value = error.findings;
+    else if (!(error instanceof Cancelled)) throw error;
+  }
+
+  /** Starts the engine anew, with the last scene that worked. */
+  private async recover(message: string | null): Promise<void> {
+    this.busy.value = 'Starting the engine again …';
+    await this.engine.restart();
+    const version = this.history.current;
+    try {
+      if (version !== undefined) {
+        let revision = await this.engine.change({ open: version.base.given });
+        if (revision.text !== version.text) revision = await this.engine.change({ revise: version.text });
+        this.show(revision, { base: version.base, label: version.label, group: null });
+      }
+      if (message !== null) this.refused.value = [{ message: `The engine had to start again: ${message}.` }];
+    } catch (error) {
+      this.broken.value = message ?? String(error);
+    }
+    this.busy.value = null;
+  }
+}
