@@ -1,63 +1,137 @@
 /** The page: the picture and the scene side by side, and a panel that says why, what and from which text. */
 
-import { useSignal } from '@preact/signals';
+import { effect, useSignal } from '@preact/signals';
 import { useEffect, useMemo, useState } from 'preact/hooks';
 import { AskPanel } from './ask/panel';
+import { DropZone, useFiles } from './files/open';
+import { Gallery } from './gallery';
 import { Header } from './header';
 import { PictureView } from './picture/view';
 import { Properties } from './scene/properties';
 import { type Space, SpaceView } from './scene/view';
+import { SourcePanel } from './source/panel';
+import { follow, openFirst } from './start';
 import { Status } from './status';
+import { WorkStorage } from './storage';
 import { Store } from './store';
 import { Tabs } from './tabs';
+import { ExerciseView, exerciseOf } from './tour/exercise';
+import { EXERCISES } from './tour/exercises';
+import { STEPS } from './tour/steps';
+import { stepOf, Tour } from './tour/tour';
+import { Welcome } from './tour/welcome';
 
 export function App() {
   const store = useMemo(() => new Store(), []);
+  const storage = useMemo(() => new WorkStorage((words) => (store.refused.value = [{ message: words }])), []);
   const [space, setSpace] = useState<Space | null>(null);
   const tab = useSignal('why');
+  const gallery = useSignal(false);
+  const welcome = useSignal(false);
+  const fragment = useSignal(location.hash);
+  const files = useFiles(store);
 
   useEffect(() => {
-    // For tests and for the curious: the page itself does not read it.
+    // For tests, and for the curious.
     Object.assign(window, { snell: store });
-    void store.start().then(() => store.open({ name: 'lecture/default', given: { builtin: 'lecture/default' } }));
-  }, []);
-  useEffect(() => {
+    void begin(store, storage).then((isNew) => (welcome.value = isNew));
+    const moved = () => (fragment.value = location.hash);
+    window.addEventListener('hashchange', moved);
     const keys = (event: KeyboardEvent) => shortcut(event, store);
     window.addEventListener('keydown', keys);
-    return () => window.removeEventListener('keydown', keys);
+    const leave = () => void storage.flush();
+    window.addEventListener('pagehide', leave);
+    const theme = effect(() => {
+      const { value } = store.theme;
+      if (value === 'auto') delete document.documentElement.dataset.theme;
+      else document.documentElement.dataset.theme = value;
+    });
+    return () => {
+      window.removeEventListener('hashchange', moved);
+      window.removeEventListener('keydown', keys);
+      window.removeEventListener('pagehide', leave);
+      theme();
+    };
   }, []);
 
+  const step = stepOf(fragment.value);
+  const exercise = exerciseOf(fragment.value);
+  const go = (to: string) => {
+    location.hash = to;
+    welcome.value = false;
+    tab.value = 'why';
+  };
+  const end = () => {
+    history.replaceState(null, '', location.pathname + location.search);
+    fragment.value = '';
+  };
+
   return (
-    <div class="studio">
-      <Header store={store} />
-      <main>
-        <section class="pane" aria-label="Picture">
-          <PictureView store={store} />
-        </section>
-        <section class="pane" aria-label="Scene in 3D">
-          <SpaceView store={store} onSpace={setSpace} />
-        </section>
-        <aside class="side">
-          <Tabs
-            chosen={tab}
-            tabs={[
-              { id: 'why', title: 'Why?', content: <AskPanel store={store} space={space} /> },
-              { id: 'scene', title: 'Scene', content: <Properties store={store} /> },
-            ]}
-          />
-        </aside>
-      </main>
-      <Status store={store} />
-    </div>
+    <DropZone files={files}>
+      <div class="studio">
+        <Header
+          store={store}
+          storage={storage}
+          openGallery={() => (gallery.value = true)}
+          openFiles={files.ask}
+          startTour={() => go('tour/1')}
+          startExercises={() => go(`exercise/${EXERCISES[0]!.id}`)}
+        />
+        <main>
+          <section class="pane" aria-label="Picture">
+            <PictureView store={store} />
+          </section>
+          <section class="pane" aria-label="Scene in 3D">
+            <SpaceView store={store} onSpace={setSpace} />
+          </section>
+          <aside class="side" aria-label="Panel">
+            {welcome.value && <Welcome steps={STEPS.length} start={() => go('tour/1')} close={() => (welcome.value = false)} />}
+            {step !== null && <Tour store={store} step={step} go={(to) => go(`tour/${to}`)} end={end} />}
+            {exercise !== null && <ExerciseView store={store} exercise={exercise} go={({ id }) => go(`exercise/${id}`)} end={end} />}
+            <Tabs
+              chosen={tab}
+              tabs={[
+                { id: 'why', title: 'Why?', content: <AskPanel store={store} space={space} /> },
+                { id: 'scene', title: 'Scene', content: <Properties store={store} /> },
+                { id: 'source', title: 'Source', content: tab.value === 'source' ? <SourcePanel store={store} glasses={[]} /> : null },
+              ]}
+            />
+          </aside>
+        </main>
+        <Status store={store} />
+        {gallery.value && <Gallery store={store} close={() => (gallery.value = false)} openFiles={files.ask} />}
+      </div>
+    </DropZone>
   );
+}
+
+async function begin(store: Store, storage: WorkStorage): Promise<boolean> {
+  try {
+    await store.start();
+  } catch (error) {
+    store.broken.value = error instanceof Error ? error.message : String(error);
+    store.busy.value = null;
+    return false;
+  }
+  if (new URLSearchParams(location.search).has('live')) {
+    follow(store, 'live');
+    return false;
+  }
+  const special = stepOf(location.hash) !== null || exerciseOf(location.hash) !== null;
+  // The tour opens its scenes itself.
+  const { isNew } = special ? { isNew: false } : await openFirst(store, storage, location.hash);
+  effect(() => {
+    const [base, revision] = [store.base.value, store.revision.value];
+    if (base === null || revision === null) return;
+    storage.save({ name: base.name, text: revision.text, files: 'files' in base.given ? base.given.files : [] });
+  });
+  return isNew;
 }
 
 function shortcut(event: KeyboardEvent, store: Store): void {
   if (!(event.ctrlKey || event.metaKey) || event.altKey) return;
   const key = event.key.toLowerCase();
-  // Fields of text have an undo of their own, which is that of the scene once they are left.
-  if (event.target instanceof HTMLInputElement && ['text', 'search', ''].includes(event.target.type) && event.target.inputMode === '') return;
-  if (key === 'z') event.shiftKey ? store.redo() : store.undo();
+  if (key === 'z') (event.shiftKey ? store.redo() : store.undo());
   else if (key === 'y') store.redo();
   else return;
   event.preventDefault();

@@ -1,16 +1,55 @@
 /** What is done with the scene as a whole. */
 
+import { useSignal } from '@preact/signals';
+import { copy, download } from './files/save';
+import { Menu } from './menu';
+import { asCommand, asPython, type Copied, stem } from './share/code';
+import { encode } from './share/link';
+import type { WorkStorage } from './storage';
 import type { Store } from './store';
 
-export function Header({ store }: { store: Store }) {
+interface Props {
+  store: Store;
+  storage: WorkStorage;
+  openGallery(): void;
+  openFiles(): void;
+  startTour(): void;
+  startExercises(): void;
+}
+
+export function Header({ store, storage, openGallery, openFiles, startTour, startExercises }: Props) {
   const { value: undo } = store.undoLabel;
   const { value: redo } = store.redoLabel;
+  const said = useSignal('');
+  const say = (words: string) => {
+    said.value = words;
+    setTimeout(() => (said.value = ''), 4000);
+  };
+  const attempt = (act: () => Promise<void>) => {
+    act().catch((error: unknown) => (store.refused.value = [{ message: error instanceof Error ? error.message : String(error) }]));
+  };
+  const copied = (what: string, text: () => string | Promise<string>) => ({
+    title: `Copy as ${what}`,
+    act: () =>
+      attempt(async () => {
+        await copy(await text());
+        say(`Copied as ${what}`);
+      }),
+  });
+  const name = () => stem(store.base.value?.name ?? 'scene');
+  const scene = (): Copied => {
+    const base = store.base.value!;
+    const files = 'files' in base.given ? base.given.files.map(([file]) => file) : [];
+    return { name: base.name, files, ...(store.pristine.value ? {} : { text: store.revision.value!.text }) };
+  };
   return (
     <header class="head">
       <h1>
         <Logo /> Snell <span>Studio</span>
       </h1>
-      <span class="scene-name">{store.base.value?.name}</span>
+      <button type="button" onClick={openGallery}>
+        {store.base.value?.name ?? 'Scenes'} <span aria-hidden="true">▾</span>
+      </button>
       <div class="group" role="group" aria-label="History">
         <button type="button" disabled={undo === null} title={undo === null ? 'Nothing to undo' : `Undo: ${undo}`} onClick={() => store.undo()}>
           <span aria-hidden="true">↶</span> Undo
@@ -19,6 +58,67 @@ export function Header({ store }: { store: Store }) {
           <span aria-hidden="true">↷</span> Redo
         </button>
       </div>
+      <span class="spacer" />
+      <span class="quiet" role="status">
+        {said.value}
+      </span>
+      <Menu
+        title="Learn"
+        actions={[
+          { title: 'Tour of the lecture', act: startTour },
+          { title: 'Exercises', act: startExercises },
+        ]}
+      />
+      <Menu
+        title="Compare"
+        actions={[
+          { title: 'With the picture as it is now', act: () => store.compare('before') },
+          { title: 'With real optics (whitted)', act: () => store.compare('whitted', { integrator: 'whitted' }) },
+          { title: 'With the lecture’s model', act: () => store.compare('lecture', { integrator: 'lecture' }) },
+          { title: 'Without shadows', act: () => store.compare('no shadows', { shadows: 'off' }) },
+          { title: 'With no bounce', act: () => store.compare('depth 0', { depth: 0 }) },
+          { title: 'With nothing', act: () => store.compare(null) },
+        ]}
+      />
+      <Menu
+        title="Share"
+        actions={[
+          {
+            title: 'Copy a link',
+            hint: 'with the whole scene',
+            act: () =>
+              attempt(async () => {
+                const base = store.base.value!;
+                const files = 'files' in base.given ? base.given.files : [];
+                const fragment = await encode({ name: base.name, text: store.revision.value!.text, files });
+                history.replaceState(null, '', fragment);
+                await copy(location.href);
+                say('The link is copied, and in the address bar');
+              }),
+          },
+          copied('command', () => asCommand(scene())),
+          copied('Python', () => asPython(scene())),
+        ]}
+      />
+      <Menu
+        title="File"
+        actions={[
+          { title: 'Open …', act: openFiles },
+          { title: 'Save scene', hint: 'TOML', act: () => download(`${name()}.toml`, store.revision.value!.text, 'application/toml') },
+          { title: 'Save picture', hint: 'PNG', act: () => attempt(async () => download(`${name()}.png`, await store.save('png'), 'image/png')) },
+          { title: 'Save numbers', hint: 'EXR', act: () => attempt(async () => download(`${name()}.exr`, await store.save('exr'), 'image/x-exr')) },
+          { title: 'Forget my work in this browser', act: () => attempt(async () => (await storage.clear(), say('Nothing is kept any more'))) },
+        ]}
+      />
+      <button
+        type="button"
+        class="plain"
+        aria-label={`Colours: ${store.theme.value}`}
+        title="Light, dark, or as the system has it"
+        onClick={() => (store.theme.value = ({ auto: 'light', light: 'dark', dark: 'auto' } as const)[store.theme.value])}
+      >
+        <span aria-hidden="true">{{ auto: '◐', light: '☀', dark: '☾' }[store.theme.value]}</span>
+      </button>
     </header>
   );
 }

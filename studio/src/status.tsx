@@ -1,6 +1,10 @@
 /** How far the picture is, whether its bits are those of the command line, and what is wrong or odd. */
 
+import { useSignal } from '@preact/signals';
 import type { Finding } from './engine/protocol';
+import { copy } from './files/save';
+import { nativeHash } from './scenes';
+import { asCommand } from './share/code';
 import type { Store } from './store';
 
 export function Status({ store }: { store: Store }) {
@@ -35,7 +39,7 @@ export function Status({ store }: { store: Store }) {
             {(time / 1000).toFixed(2)} s · {count(rays)} rays
           </span>
         )}
-        {outcome && <Hash sha256={outcome.sha256} />}
+        {outcome && <Bits store={store} sha256={outcome.sha256} />}
         {warnings.length > 0 && (
           <details class="warnings">
             <summary>
@@ -54,10 +58,37 @@ export function Status({ store }: { store: Store }) {
   );
 }
 
-function Hash({ sha256 }: { sha256: string }) {
+/** Whether the bits are those of the command line, or how to find out. */
+function Bits({ store, sha256 }: { store: Store; sha256: string }) {
+  const native = store.pristine.value ? nativeHash(store.base.value!.name) : null;
+  const told = useSignal('');
+  const hash = (
+    <>
+      SHA-256 <code>{sha256.slice(0, 12)}…</code>
+    </>
+  );
+  if (native !== null) {
+    const same = native === sha256;
+    return (
+      <span class={`hash ${same ? 'same' : 'differs'}`} title={`In this page ${sha256}, on the command line ${native}`}>
+        {same ? '✓ the same bits as the command line' : '✗ other bits than the command line'} {hash}
+      </span>
+    );
+  }
+  const check = async () => {
+    const base = store.base.value!;
+    const files = 'files' in base.given ? base.given.files.map(([file]) => file) : [];
+    const text = store.pristine.value ? {} : { text: store.revision.value!.text };
+    await copy(asCommand({ name: base.name, files, ...text }));
+    told.value = 'The command is copied: run it, and compare the number after “film”.';
+  };
   return (
     <span class="hash" title={`SHA-256 of the numbers of this picture: ${sha256}`}>
-      SHA-256 <code>{sha256.slice(0, 12)}…</code>
+      {hash}{' '}
+      <button type="button" class="plain" onClick={() => void check()}>
+        Check
+      </button>{' '}
+      <span role="status">{told.value}</span>
     </span>
   );
 }

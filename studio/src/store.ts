@@ -38,7 +38,16 @@ export interface EditOptions {
   group?: string;
 }
 
-type Step = { change: Change; label: string; group: string | null; base: Base | null; done: () => void; failed: (error: Error) => void };
+interface Step {
+  change: Change;
+  /** Of what is opened: the text that it had been given since. */
+  text?: string;
+  label: string;
+  group: string | null;
+  base: Base | null;
+  done(): void;
+  failed(error: Error): void;
+}
 
 /** Milliseconds after which a change does not wait any longer for the picture of the one before. */
 const PATIENCE = 400;
@@ -47,6 +56,10 @@ export class Store {
   /** The scene that is shown; nothing before the first one. */
   readonly revision = signal<Revision | null>(null);
   readonly base = signal<Base | null>(null);
+  /** What a person has written and the engine refuses; until it is mended or taken back, the views show the scene before. */
+  readonly draft = signal<string | null>(null);
+  /** Is the scene as it is built in? */
+  readonly pristine = signal(false);
   /** Why the last change was refused; the scene is as it was before. */
   readonly refused = signal<Finding[]>([]);
   /** What takes longer than a moment, for people who wait. */
@@ -58,6 +71,7 @@ export class Store {
   readonly stopped = signal(false);
   /** Counts up whenever the picture on the surface has changed. */
   readonly frame = signal(0);
+  readonly theme = signal<'auto' | 'light' | 'dark'>('auto');
   readonly hovered = signal<Pixel | null>(null);
   readonly pinned = signal<Pixel | null>(null);
   /** Of the pixel that is pinned, or else under the pointer. */
@@ -85,6 +99,7 @@ export class Store {
   private running = false;
   private covered: (() => void) | null = null;
   private begun = 0;
+  private openedText = '';
   private readonly question = { number: 0, asking: false };
 
   constructor(threads?: number) {
@@ -116,13 +131,19 @@ export class Store {
     this.busy.value = null;
   }
 
-  /** Opens a scene in place of the one that is shown. Rejects with a `Refusal`, and then that one stays. */
-  open(base: Base, label = `open ${base.name}`): Promise<void> {
-    return this.enqueue({ change: { open: base.given }, label, group: null, base });
+  /** Opens a scene in place of the one that is shown, with a text that it has been given since. Rejects with a `Refusal`. */
+  open(base: Base, { label = `open ${base.name}`, text }: { label?: string; text?: string } = {}): Promise<void> {
+    return this.enqueue({ change: { open: base.given }, label, group: null, base, ...(text === undefined ? {} : { text }) });
   }
 
   /** Changes values of the scene. What is refused is told by `refused`. */
   edit(edits: Edit[], { label, group = undefined }: EditOptions): void {
+    if (this.draft.value !== null) {
+      // Or what was written would be lost.
+      const help = 'Mend it under “Source”, or undo what was written there.';
+      this.refused.value = [{ message: 'The text of the scene has an error, so that nothing else can be changed.', help }];
+      return;
+    }
     const last = this.steps.at(-1);
     // Of a drag only the newest place counts.
     if (last && group !== undefined && last.group === group && 'edit' in last.change) {
@@ -140,12 +161,20 @@ export class Store {
 
   /** Takes the text that a person has written. */
   revise(text: string): void {
+    this.draft.value = text;
     const step = this.steps.at(-1);
     if (step && 'revise' in step.change) step.change = { revise: text };
     else this.enqueue({ change: { revise: text }, label: 'edit the text', group: 'text', base: null }).catch(() => {});
   }
 
   undo(): void {
+    if (this.draft.value !== null) {
+      batch(() => {
+        this.draft.value = null;
+        this.refused.value = [];
+      });
+      return;
+    }
     void this.travel(-1);
   }
 
@@ -222,6 +251,18 @@ export class Store {
     }
   }
 
+  /** A file with the picture as far as it has come. */
+  async save(format: 'png' | 'exr'): Promise<Uint8Array<ArrayBuffer>> {
+    // The desk has the numbers of what was rendered last.
+    if (this.target !== this.surface) {
+      this.render();
+      await new Promise<void>((done) => {
+        const end = this.outcome.subscribe((outcome) => outcome && (done(), queueMicrotask(() => end())));
+      });
+    }
+    return this.engine.save(format);
+  }
+
   /** Ends whatever takes long: the engine is started anew with the scene as it was. */
   async cancel(): Promise<void> {
     await this.recover(null);
@@ -239,8 +280,7 @@ export class Store {
     for (let step = this.steps.shift(); step !== undefined; step = this.steps.shift()) {
       const slow = setTimeout(() => (this.busy.value = 'Reading the scene …'), 150);
       try {
-        const revision = await this.engine.change(step.change);
-        this.show(revision, step);
+        this.show(await this.read(step), step);
         step.done();
         await this.firstPass();
       } catch (error) {
@@ -254,9 +294,18 @@ export class Store {
     this.running = false;
   }
 
+  private async read({ change, text }: Pick<Step, 'change' | 'text'>): Promise<Revision> {
+    const revision = await this.engine.change(change);
+    if ('open' in change) this.openedText = revision.text;
+    return text === undefined || text === revision.text ? revision : this.engine.change({ revise: text });
+  }
+
   private show(revision: Revision, step: Pick<Step, 'base' | 'label' | 'group'>): void {
     batch(() => {
       const base = step.base ?? this.base.value!;
+      // More may have been written meanwhile.
+      if (this.draft.value === revision.text || step.base) this.draft.value = null;
+      this.pristine.value = 'builtin' in base.given && revision.text === this.openedText;
       this.refused.value = [];
       this.sighting.value = null;
       this.base.value = base;
@@ -288,8 +337,8 @@ export class Store {
     this.running = true;
     try {
       const stays = version.base === this.base.value;
-      let revision = stays ? null : await this.engine.change({ open: version.base.given });
-      if (revision?.text !== version.text) revision = await this.engine.change({ revise: version.text });
+      const change: Change = stays ? { revise: version.text } : { open: version.base.given };
+      const revision = await this.read({ change, text: version.text });
       this.history.move(steps);
       this.show(revision, { base: version.base, label: version.label, group: null });
     } catch (error) {
@@ -339,8 +388,7 @@ export class Store {
     const version = this.history.current;
     try {
       if (version !== undefined) {
-        let revision = await this.engine.change({ open: version.base.given });
-        if (revision.text !== version.text) revision = await this.engine.change({ revise: version.text });
+        const revision = await this.read({ change: { open: version.base.given }, text: version.text });
         this.show(revision, { base: version.base, label: version.label, group: null });
       }
       if (message !== null) this.refused.value = [{ message: `The engine had to start again: ${message}.` }];

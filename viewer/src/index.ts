@@ -1,6 +1,7 @@
 /** The public face of the viewer; see the README. */
 
 export type * from './data';
+export type { Change, Editing, Handles, Movement, ObjectRef } from './editing';
 export { TreePanel } from './tree-panel';
 export { mount, type Viewer, type ViewerEvents, type ViewerOptions } from './viewer';
 export { validate, ViewerDataError } from './validate';

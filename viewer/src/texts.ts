@@ -3,6 +3,7 @@
 import { cssColor } from './color';
 import type { RayTreeDocument, ViewScene } from './data';
 import { element, stroke, swatch } from './dom';
+import type { ObjectRef } from './editing';
 import { KIND_NAMES } from './words';
 
 /** Names in the text alternative: nobody listens to a hundred. */
@@ -31,13 +32,20 @@ function header(title: string, facts: string, ...before: HTMLElement[]): HTMLEle
 }
 
 /** What the drawing shows, for those who do not see it. */
-export function alternative({ spheres, meshes, lights }: ViewScene, withTree: boolean, withPixels: boolean): string {
+export function alternative({ spheres, meshes, lights }: ViewScene, withTree: boolean, withPixels: boolean, withHandles: boolean): string {
   return [
     `Spheres: ${names(spheres)}. Meshes: ${names(meshes)}. Lights: ${names(lights)}.`,
     ...(withTree ? ['The tree of rays beside the drawing says where each ray goes and what it adds.'] : []),
     'Arrow keys turn the drawing, plus and minus go nearer and farther.',
+    ...(withHandles ? ['Alt with an arrow key moves what is selected; Alt with Page Up and Page Down moves it away and nearer.'] : []),
     ...(withPixels ? ['Shift with an arrow key explains the next pixel in that direction.'] : []),
   ].join(' ');
+}
+
+export function selectedWords(selected: ObjectRef | null): string {
+  if (selected === null) return '';
+  if (selected.kind === 'camera') return `; the ${selected.index === 0 ? 'camera' : 'target of the camera'} is selected`;
+  return `; the ${selected.kind} ${selected.name} is selected`;
 }
 
 function names(things: { name: string }[]): string {

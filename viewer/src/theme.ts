@@ -16,6 +16,8 @@ export interface Theme {
   tint: string;
   bulb: string;
   rays: Record<RayKind | 'shadow', string>;
+  /** Of handles along x, y and z. */
+  axes: [string, string, string];
 }
 
 export const LIGHT: Theme = {
@@ -29,6 +31,7 @@ export const LIGHT: Theme = {
   tint: '#f0eee9',
   bulb: '#d79a00',
   rays: { camera: '#4a5568', mirror: '#d4541a', refracted: '#0a7d8c', inside: '#7048d6', shadow: '#a87400' },
+  axes: ['#c8321f', '#2f8a23', '#2a62d9'],
 };
 
 export const DARK: Theme = {
@@ -42,6 +45,7 @@ export const DARK: Theme = {
   tint: '#1f242d',
   bulb: '#ffd66b',
   rays: { camera: '#c3ccd9', mirror: '#ff9a62', refracted: '#4fd3e0', inside: '#b59cff', shadow: '#e9bd4b' },
+  axes: ['#ff7a66', '#7bd66b', '#7fb0ff'],
 };
 
 /** Dark or light as the page asks for, or always the same. */
@@ -58,7 +62,7 @@ export function followTheme(scheme: Scheme, apply: (theme: Theme) => void): () =
 
 /** The same colours for the style sheet: `--ink`, `--ray-mirror` and so on. */
 export function setProperties(element: HTMLElement, theme: Theme): void {
-  const { rays, ...plain } = theme;
+  const { rays, axes: _, ...plain } = theme;
   for (const [name, color] of Object.entries(plain)) element.style.setProperty(`--${name}`, color);
   for (const [kind, color] of Object.entries(rays)) element.style.setProperty(`--ray-${kind}`, color);
   element.style.colorScheme = theme === DARK ? 'dark' : 'light';

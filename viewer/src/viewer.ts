@@ -3,10 +3,11 @@
 import type { RayTreeDocument, ViewerData, ViewScene } from './data';
 import { button, checkbox, element } from './dom';
 import { TreeModel } from './model';
+import type { Editing, Movement, ObjectRef } from './editing';
 import { Panel } from './panel';
 import { nextPixel, type Pixel } from './pixels';
 import { styled } from './style';
-import { alternative, legend, pixelHeader, sceneHeader } from './texts';
+import { alternative, legend, pixelHeader, sceneHeader, selectedWords } from './texts';
 import { followTheme, LIGHT, type Scheme, setProperties, type Theme } from './theme';
 import { Drawing } from './three/drawing';
 import { validate, validatePicture, validateScene, validateTree } from './validate';
@@ -29,6 +30,12 @@ export interface ViewerEvents {
   hover: (id: number | null) => void;
   /** Someone asks for the rays of a pixel: its column and row, counted from the left and from the top. */
   pixel: (x: number, y: number) => void;
+  /** Someone has clicked an object, or none: choosing it is for `setObjects`. */
+  object: (object: ObjectRef | null) => void;
+  /** The selected object is being dragged. The same drag begins with the old scene each time. */
+  move: (change: Movement) => void;
+  /** It has been dragged, or its drag has been taken back: the last of its changes once more. */
+  moved: (change: Movement) => void;
   /** The drawing has changed; not while the pointer is on a ray. */
   draw: () => void;
 }
@@ -52,9 +59,13 @@ export class Viewer {
     select: new Set(),
     hover: new Set(),
     pixel: new Set(),
+    object: new Set(),
+    move: new Set(),
+    moved: new Set(),
     draw: new Set(),
   };
   private header = element('header');
+  private editing: Editing = { selected: null, handles: null, snap: null };
   private scene: ViewScene;
   /** What is drawn; the panel may show another pixel. */
   private tree: RayTreeDocument | null = null;
@@ -105,7 +116,7 @@ export class Viewer {
     this.state.selected = id;
     if (this.panel.model === this.model) this.panel.select(id);
     this.update();
-    for (const listener of this.listeners.select) listener(id);
+    this.tell('select', id);
   }
 
   /** Brings a ray forward as if the pointer were on it. */
@@ -114,7 +125,7 @@ export class Viewer {
     this.state.hovered = id;
     if (this.panel.model === this.model) this.panel.hover(id);
     this.update();
-    for (const listener of this.listeners.hover) listener(id);
+    this.tell('hover', id);
   }
 
   /**
@@ -189,6 +200,14 @@ export class Viewer {
     frame.append(this.panel.root);
   }
 
+  /** Marks an object as selected, with handles to drag it by. */
+  setObjects(editing: Editing): void {
+    this.editing = editing;
+    this.drawing?.setEditing(editing);
+    this.showPixels();
+    this.update();
+  }
+
   /** A quiet line below the drawing. */
   setNote(text: string): void {
     this.showNote({ other: text });
@@ -243,8 +262,8 @@ export class Viewer {
     Object.assign(this.state, { selected, hovered: null });
     if (this.panel.model === model && this.panel.selected !== selected) this.panel.select(selected);
     this.update();
-    if (hovered !== null) for (const listener of this.listeners.hover) listener(null);
-    if (selected !== before) for (const listener of this.listeners.select) listener(selected);
+    if (hovered !== null) this.tell('hover', null);
+    if (selected !== before) this.tell('select', selected);
   }
 
   /** What is done to the panel is about its own rays: they are drawn again if others are. */
@@ -289,13 +308,14 @@ export class Viewer {
     if (drawing === null) return;
     const size = drawing.plane.size;
     drawing.picksPixels = this.listeners.pixel.size > 0;
+    drawing.picksObjects = this.listeners.object.size > 0;
     drawing.mark(this.pixel, this.tree && this.pixel === this.tree.pixel ? this.tree.size : size);
     this.pictureBox.hidden = drawing.plane.size === null;
-    this.alternative.textContent = alternative(this.scene, this.tree !== null, drawing.picksPixels && this.pixelsSize() !== null);
+    this.alternative.textContent = alternative(this.scene, this.tree !== null, drawing.picksPixels && this.pixelsSize() !== null, this.editing.handles !== null);
     const asks = drawing.picksPixels && size !== null && this.pixel === null;
     this.showNote({ hint: asks ? 'Look through the camera and click a pixel to see its rays.' : '' });
     const rays = this.tree ? ` and the rays of pixel (${this.tree.pixel.join(', ')})` : '';
-    drawing.stage.canvas.setAttribute('aria-label', `The scene${rays} in 3D`);
+    drawing.stage.canvas.setAttribute('aria-label', `The scene${rays} in 3D${selectedWords(this.editing.selected)}`);
   }
 
   /** Columns and rows of what pixels are asked for. */
@@ -306,7 +326,7 @@ export class Viewer {
   private ask(pixel: Pixel): void {
     this.pixel = pixel;
     this.showPixels();
-    for (const listener of this.listeners.pixel) listener(...pixel);
+    this.tell('pixel', ...pixel);
   }
 
   private onKey(event: KeyboardEvent): void {
@@ -322,6 +342,10 @@ export class Viewer {
     this.drawing?.show(this.state);
   }
 
+  private tell<E extends keyof ViewerEvents>(event: E, ...values: Parameters<ViewerEvents[E]>): void {
+    for (const listener of this.listeners[event]) (listener as (...values: Parameters<ViewerEvents[E]>) => void)(...values);
+  }
+
   private showNote(notes: Partial<Viewer['notes']>): void {
     Object.assign(this.notes, notes);
     this.note.textContent = Object.values(this.notes).filter((text) => text !== '').join(' ');
@@ -333,8 +357,11 @@ export class Viewer {
         select: (id) => this.select(id),
         hover: (id) => this.hover(id),
         pixel: (pixel) => this.ask(pixel),
+        object: (object) => this.tell('object', object),
+        move: (change) => this.tell('move', change),
+        moved: (change) => this.tell('moved', change),
         frame: () => {
-          if (this.state.hovered === null) for (const listener of this.listeners.draw) listener();
+          if (this.state.hovered === null) this.tell('draw');
         },
       });
     } catch (error) {

@@ -38,11 +38,15 @@ export interface Revision {
   text: string;
   scene: SceneDocument;
   /** Without corners and faces, which `geometry` has under the mesh's key, or had when they were new. */
-  view: ViewScene & { meshes: (ViewMesh & { geometry: string })[] };
+  view: DistributedView;
   geometry: Map<string, Geometry>;
   /** What is odd about it. */
   warnings: Finding[];
   size: [number, number];
+}
+
+export interface DistributedView extends ViewScene {
+  meshes: (ViewMesh & { geometry: string })[];
 }
 
 export type Geometry = Pick<ViewMesh, 'vertices' | 'faces'>;

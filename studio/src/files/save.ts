@@ -8,12 +8,6 @@ export function download(name: string, content: BlobPart, type: string): void {
   setTimeout(() => URL.revokeObjectURL(url), 10_000);
 }
 
-/** The last part of a name, without its ending: what a file may be called. */
-export function stemOf(name: string): string {
-  const last = name.split(/[\\/]/).at(-1)!.replace(/\.[A-Za-z0-9]+$/, '');
-  return last.replace(/[^\p{L}\p{N}._ -]/gu, '_') || 'scene';
-}
-
 /** Rejects where the browser does not allow it. */
 export async function copy(text: string): Promise<void> {
   await navigator.clipboard.writeText(text);

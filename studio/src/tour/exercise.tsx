@@ -22,7 +22,7 @@ export function ExerciseView({ store, exercise, go, end }: { store: Store; exerc
     store.pin(null);
     const base = { name: exercise.scene, given: { builtin: exercise.scene } };
     void store
-      .open(base, `exercise: ${exercise.title.toLowerCase()}`)
+      .open(base, { label: `exercise: ${exercise.title.toLowerCase()}` })
       .then(() => store.engine.ask({ ask: 'explain', pixel: exercise.pixel }))
       .then((answer) => {
         if (current) tree.value = answer;

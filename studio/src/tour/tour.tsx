@@ -21,7 +21,7 @@ export function Tour({ store, step, go, end }: { store: Store; step: number; go(
     let current = true;
     store.pin(null);
     void store
-      .open({ name: scene, given: { builtin: scene } }, `tour: ${title.toLowerCase()}`)
+      .open({ name: scene, given: { builtin: scene } }, { label: `tour: ${title.toLowerCase()}` })
       .then(() => {
         if (!current) return;
         if (edits) store.edit(edits, { label: `tour: ${title.toLowerCase()}` });

@@ -1,13 +1,15 @@
 /** The scene and the rays of one sample in 3D. */
 
-import { Raycaster, Vector2, Vector3 } from 'three';
+import { Vector3 } from 'three';
 import type { RayNode, RayTreeDocument, ViewScene } from '../data';
 import { element } from '../dom';
+import type { Editing, ObjectRef } from '../editing';
 import { rayLine } from '../lines';
 import type { TreeModel } from '../model';
 import { decodePicture, middleOf, type Pixel } from '../pixels';
 import type { Theme } from '../theme';
 import { Apparatus } from './apparatus';
+import { Editor, type EditorEvents } from './editor';
 import { type Extent, extentOf } from './extent';
 import { ImagePlane } from './image-plane';
 import { Names, sceneLabels } from './names';
@@ -16,13 +18,15 @@ import { pick, type PickedLine } from './picking';
 import { type DrawnSample, type RayState, Rays } from './rays';
 import { Stage } from './stage';
 import { stillOf } from './still';
+import { objectAt } from './subjects';
 import { scaledNodes, scaledScene, unitFor } from './unit';
 import { fromLight, overview, throughCamera, type Viewpoint } from './viewpoints';
 
-export interface DrawingEvents {
+export interface DrawingEvents extends EditorEvents {
   select(id: number | null): void;
   hover(id: number | null): void;
   pixel(pixel: Pixel): void;
+  object(object: ObjectRef | null): void;
   /** A frame has been drawn. */
   frame(): void;
 }
@@ -45,17 +49,21 @@ export class Drawing {
   readonly plane: ImagePlane;
   /** Can pixels of the picture be clicked? */
   picksPixels = false;
+  /** And objects? */
+  picksObjects = false;
   /** In the drawing's own unit, like all lengths here. */
-  private scene: ViewScene;
+  scene: ViewScene;
   /** By what lengths are multiplied. */
-  private unit!: number;
-  private extent!: Extent;
+  unit!: number;
+  extent!: Extent;
   private tree: RayTreeDocument | null;
   private model: TreeModel | null = null;
   private sample: DrawnSample | null = null;
   private readonly objects: Objects;
   private readonly apparatus: Apparatus;
   private readonly rays: Rays;
+  private readonly editor: Editor;
+  private selected: ObjectRef | null = null;
   private lines: PickedLine[] = [];
   private readonly target = element('span', { class: 'target', 'aria-hidden': true, hidden: true });
   private pressed = new Vector3();
@@ -71,7 +79,7 @@ export class Drawing {
   constructor(
     given: ViewScene,
     tree: RayTreeDocument | null,
-    private theme: Theme,
+    public theme: Theme,
     private readonly events: DrawingEvents,
   ) {
     this.tree = tree;
@@ -82,8 +90,14 @@ export class Drawing {
     this.apparatus = new Apparatus(uniforms);
     this.plane = new ImagePlane(uniforms);
     this.rays = new Rays(uniforms);
-    scene.add(this.objects.group, this.plane.group, this.apparatus.group, this.rays.group);
-    scene.onBeforeRender = () => this.plane.prepare(this.stage.camera, uniforms.size.value.y);
+    // Its listeners come first.
+    this.stage.canvas.addEventListener('pointerdown', ({ clientX, clientY }) => this.pressed.set(clientX, clientY, 0), { capture: true });
+    this.editor = new Editor(this.stage, () => this, (event) => this.objectAt(event), events);
+    scene.add(this.objects.group, this.plane.group, this.apparatus.group, this.rays.group, this.editor.group);
+    scene.onBeforeRender = () => {
+      this.plane.prepare(this.stage.camera, uniforms.size.value.y);
+      this.editor.prepare();
+    };
     this.stage.onFrame = () => {
       const { x, y } = uniforms.size.value;
       this.names.update(this.stage.camera, x, y);
@@ -114,7 +128,7 @@ export class Drawing {
     }
     this.showScene();
     if (reset) this.reset(false);
-    else if (this.standing !== null && this.standing !== this.overview) this.stage.show(this.standing(), false);
+    else if (this.standing !== null && this.standing !== this.overview && !this.editor.dragging) this.stage.show(this.standing(), false);
     this.stage.requestFrame();
   }
 
@@ -160,9 +174,16 @@ export class Drawing {
     this.stage.requestFrame();
   }
 
+  /** What is selected in the scene, and how it can be moved. */
+  setEditing(editing: Editing): void {
+    this.selected = editing.selected;
+    this.editor.set(editing);
+    this.stage.requestFrame();
+  }
+
   show(state: RayState): void {
     this.rays.show(this.sample, state, this.theme);
-    this.names.setImportant(new Set([state.selected, state.hovered].map((id) => this.objectMetBy(id))));
+    this.names.setImportant(new Set([this.selected?.name ?? '', ...[state.selected, state.hovered].map((id) => this.objectMetBy(id))]));
     this.stage.canvas.classList.toggle('on-ray', state.hovered !== null);
     this.stage.requestFrame();
   }
@@ -198,6 +219,7 @@ export class Drawing {
   dispose(): void {
     this.pictures++;
     this.rays.dispose();
+    this.editor.dispose();
     this.objects.dispose();
     this.apparatus.dispose();
     this.plane.dispose();
@@ -250,22 +272,27 @@ export class Drawing {
   }
 
   private listen(canvas: HTMLCanvasElement): void {
-    canvas.addEventListener('pointerdown', ({ clientX, clientY }) => this.pressed.set(clientX, clientY, 0));
     canvas.addEventListener('click', (event) => {
       if (this.pressed.distanceTo(new Vector3(event.clientX, event.clientY)) > CLICK) return;
       const ray = this.rayAt(event);
-      const pixel = ray === null ? this.pixelAt(event) : null;
-      if (pixel !== null) this.events.pixel(pixel);
-      else this.events.select(ray);
+      const met = this.pointedAt(event, false);
+      if (ray === null && met?.pixel) return this.events.pixel(met.pixel);
+      this.events.select(ray);
+      if (ray === null && this.picksObjects) this.events.object(met?.object ?? null);
     });
     canvas.addEventListener('pointermove', (event) => {
       if (event.buttons !== 0) return;
-      const ray = this.rayAt(event);
+      const grip = this.editor.hover(event);
+      const ray = grip ? null : this.rayAt(event);
+      const met = grip || ray !== null ? null : this.pointedAt(event, true);
       this.events.hover(ray);
-      this.aim(ray === null ? this.pixelAt(event) : null, event.offsetX, event.offsetY);
+      canvas.classList.toggle('on-grip', grip);
+      canvas.classList.toggle('on-object', met?.object !== undefined);
+      this.aim(met?.pixel ?? null, event.offsetX, event.offsetY);
     });
     canvas.addEventListener('pointerleave', () => {
       this.events.hover(null);
+      this.editor.leave();
       this.aim(null);
     });
   }
@@ -280,22 +307,21 @@ export class Drawing {
   }
 
   private rayAt(event: MouseEvent): number | null {
-    const { camera, uniforms, canvas } = this.stage;
-    const { left, top } = canvas.getBoundingClientRect();
-    const projection = camera.projectionMatrix.clone().multiply(camera.matrixWorldInverse);
-    const { x: width, y: height } = uniforms.size.value;
-    return pick(this.lines, event.clientX - left, event.clientY - top, projection, width, height);
+    const { x: width, y: height } = this.stage.uniforms.size.value;
+    return pick(this.lines, ...this.stage.pixelOf(event), this.stage.projection, width, height);
   }
 
-  private pixelAt(event: MouseEvent): Pixel | null {
-    if (!this.picksPixels) return null;
-    const { left, top, width, height } = this.stage.canvas.getBoundingClientRect();
-    const caster = new Raycaster();
-    caster.setFromCamera(
-      new Vector2((2 * (event.clientX - left)) / width - 1, 1 - (2 * (event.clientY - top)) / height),
-      this.stage.camera,
-    );
-    return this.plane.pixelAt(caster.ray);
+  /** The pixel of the picture or the object under the pointer, whichever is nearer. */
+  private pointedAt(event: MouseEvent, hasty: boolean): { pixel?: Pixel; object?: ObjectRef } | null {
+    const place = this.stage.pixelOf(event);
+    const pixel = this.picksPixels ? this.plane.pixelAt(this.stage.lineOfSight(...place)) : null;
+    const object = this.picksObjects ? objectAt(this.scene, this.extent, this.objects, this.stage, ...place, hasty) : null;
+    if (pixel !== null && (object === null || pixel.distance < object.distance)) return { pixel: pixel.at };
+    return object && { object: object.object };
+  }
+
+  private objectAt(event: MouseEvent): ObjectRef | null {
+    return objectAt(this.scene, this.extent, this.objects, this.stage, ...this.stage.pixelOf(event), false)?.object ?? null;
   }
 }
 

@@ -158,8 +158,8 @@ export class ImagePlane {
     this.marks.points.visible = this.picture.visible && pixels > 8 * MARK;
   }
 
-  /** The pixel of the picture that a line of sight goes through. */
-  pixelAt(ray: Ray): Pixel | null {
+  /** The pixel of the picture that a line of sight goes through, and how far away it is. */
+  pixelAt(ray: Ray): { at: Pixel; distance: number } | null {
     if (this.size === null || !this.shown) return null;
     const distance = this.corner.clone().sub(ray.origin).dot(this.forward) / ray.direction.dot(this.forward);
     if (!(distance > 0)) return null;
@@ -167,7 +167,7 @@ export class ImagePlane {
     const [width, height] = this.size;
     const x = Math.floor((width * to.dot(this.right)) / this.right.lengthSq());
     const y = Math.floor((height * to.dot(this.down)) / this.down.lengthSq());
-    return x >= 0 && x < width && y >= 0 && y < height ? [x, y] : null;
+    return x >= 0 && x < width && y >= 0 && y < height ? { at: [x, y], distance } : null;
   }
 
   dispose(): void {

@@ -1,6 +1,6 @@
 /** A canvas with a camera that people turn; draws only when something has changed. */
 
-import { PerspectiveCamera, Scene, Vector2, Vector3, WebGLRenderer } from 'three';
+import { type Matrix4, PerspectiveCamera, type Ray, Raycaster, Scene, Vector2, Vector3, WebGLRenderer } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { element } from '../dom';
 import { Flight } from './flight';
@@ -70,6 +70,31 @@ export class Stage {
   /** Of the part that is free. */
   get aspect(): number {
     return this.camera.aspect;
+  }
+
+  /** From the space of the scene to that of the screen. */
+  get projection(): Matrix4 {
+    return this.camera.projectionMatrix.clone().multiply(this.camera.matrixWorldInverse);
+  }
+
+  /** The pointer's place on the canvas, from its top left corner. */
+  pixelOf({ clientX, clientY }: MouseEvent): [number, number] {
+    const { left, top } = this.canvas.getBoundingClientRect();
+    return [clientX - left, clientY - top];
+  }
+
+  lineOfSight(x: number, y: number): Ray {
+    const { x: width, y: height } = this.uniforms.size.value;
+    const caster = new Raycaster();
+    caster.setFromCamera(new Vector2((2 * x) / width - 1, 1 - (2 * y) / height), this.camera);
+    return caster.ray;
+  }
+
+  /** Where a point is on the canvas; `null` if it is not before the eye. */
+  onScreen(point: Vector3): [number, number] | null {
+    const { x, y, z } = point.clone().project(this.camera);
+    const { x: width, y: height } = this.uniforms.size.value;
+    return Math.abs(z) > 1 ? null : [((x + 1) / 2) * width, ((1 - y) / 2) * height];
   }
 
   /** Keeps what is looked at clear of buttons above and notes below. */

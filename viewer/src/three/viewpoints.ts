@@ -90,7 +90,7 @@ function axes(back: Vector3, up: Vector3): { right: Vector3; top: Vector3; back:
   return { right, top: new Vector3().crossVectors(back, right), back };
 }
 
-function imageCenter(camera: ViewCamera): Vector3 {
+export function imageCenter(camera: ViewCamera): Vector3 {
   return camera.corners.reduce((sum, corner) => sum.add(new Vector3(...corner)), new Vector3()).divideScalar(4);
 }
 

@@ -1,0 +1,54 @@
+/** The scene's text. What is written there is shown at once, if it makes a scene. */
+
+import { effect } from '@preact/signals';
+import { useEffect, useRef } from 'preact/hooks';
+import type { Store } from '../store';
+
+/** Milliseconds without a key before the text is read. */
+const CALM = 250;
+
+export function SourcePanel({ store, glasses }: { store: Store; glasses: readonly string[] }) {
+  const place = useRef<HTMLDivElement>(null);
+  useEffect(() => {
+    let end = () => {};
+    let gone = false;
+    // Only who looks at the text needs its editor, which is as large as the rest of the page.
+    void import('./editor').then(({ SourceEditor }) => {
+      if (gone) return;
+      let waiting: ReturnType<typeof setTimeout> | undefined;
+      const editor = new SourceEditor(place.current!, {
+        text: store.draft.value ?? store.revision.value?.text ?? '',
+        label: 'Source of the scene, in TOML. Escape, then Tab leaves it.',
+        onChange(text) {
+          clearTimeout(waiting);
+          waiting = setTimeout(() => store.revise(text), CALM);
+        },
+        onHistory: (step) => (step === 'undo' ? store.undo() : store.redo()),
+        known: () => ({ glasses, files: filesOf(store) }),
+      });
+      const dark = window.matchMedia('(prefers-color-scheme: dark)');
+      const ends = [
+        effect(() => {
+          if (store.draft.value === null) editor.setText(store.revision.value?.text ?? '');
+        }),
+        effect(() => editor.setFindings([...store.refused.value, ...store.warnings.value])),
+        effect(() => editor.setTheme(store.theme.value === 'dark' || (store.theme.value === 'auto' && dark.matches) ? 'dark' : 'light')),
+      ];
+      end = () => {
+        clearTimeout(waiting);
+        for (const one of ends) one();
+        editor.dispose();
+      };
+    });
+    return () => {
+      gone = true;
+      end();
+    };
+  }, []);
+  return <div ref={place} class="source" />;
+}
+
+function filesOf(store: Store): string[] {
+  const given = store.base.value?.given;
+  return given && 'files' in given ? given.files.map(([name]) => name) : [];
+}

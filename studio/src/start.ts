@@ -1,0 +1,75 @@
+/** What is shown at first: what the address asks for, else the work of the last time, else the lecture's scene. */
+
+import type { Finding, Given } from './engine/protocol';
+import { SCENES } from './scenes';
+import { decode } from './share/link';
+import type { WorkStorage } from './storage';
+import type { Base, Store } from './store';
+
+export const FIRST = 'lecture/default';
+
+/** What was found: whether somebody is here for the first time. */
+export async function openFirst(store: Store, storage: WorkStorage, fragment: string): Promise<{ isNew: boolean }> {
+  try {
+    const shared = await decode(fragment);
+    if (shared !== null) {
+      await openWork(store, { files: [], ...shared });
+      return { isNew: false };
+    }
+    const name = decodeURIComponent(fragment.slice(1));
+    if (SCENES.some((scene) => scene.name === name)) {
+      await store.open({ name, given: { builtin: name } });
+      return { isNew: false };
+    }
+  } catch (error) {
+    const finding: Finding = { message: error instanceof Error ? error.message : String(error) };
+    await store.open(builtin(FIRST));
+    store.refused.value = [finding];
+    return { isNew: false };
+  }
+  const work = await storage.load();
+  if (work !== null) {
+    try {
+      await openWork(store, work);
+      return { isNew: false };
+    } catch {
+      await store.open(builtin(FIRST));
+      store.refused.value = [{ message: `The work of the last time, ${work.name}, could not be opened again.` }];
+      return { isNew: false };
+    }
+  }
+  await store.open(builtin(FIRST));
+  return { isNew: true };
+}
+
+/** A scene with its text: a built-in one stays one, so that its bits can be compared. */
+export function openWork(store: Store, { name, text, files }: { name: string; text: string; files: [string, Uint8Array][] }): Promise<void> {
+  if (files.length === 0 && SCENES.some((scene) => scene.name === name)) return store.open(builtin(name), { text });
+  const given: Given = { name: /\.\w+$/.test(name) ? name : `${name}.toml`, text: new TextEncoder().encode(text), files };
+  return store.open({ name, given });
+}
+
+function builtin(name: string): Base {
+  return { name, given: { builtin: name } };
+}
+
+/** Shows what `snell studio` serves, each time that it changes. Returns what ends that. */
+export function follow(store: Store, url: string): () => void {
+  const source = new EventSource(url);
+  let base: Base | null = null;
+  source.onmessage = ({ data }: MessageEvent<string>) => {
+    const told = JSON.parse(data) as { error: string } | { name: string; text: string; files: [string, string][] };
+    if ('error' in told) {
+      store.refused.value = [{ message: told.error }];
+      return;
+    }
+    const files = told.files.map(([name, bytes]): [string, Uint8Array] => [name, fromBase64(bytes)]);
+    base = { name: told.name, given: { name: told.name, text: fromBase64(told.text), files } };
+    store.open(base, { label: `read ${told.name}` }).catch(() => {});
+  };
+  return () => source.close();
+}
+
+function fromBase64(text: string): Uint8Array {
+  return Uint8Array.from(atob(text), (sign) => sign.charCodeAt(0));
+}
