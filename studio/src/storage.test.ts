@@ -25,10 +25,11 @@ class Locks {
   private readonly held = new Map<string, object>();
 
   of(tab: object): NonNullable<Browser['locks']> {
-    const request = (name: string, _options: LockOptions, act: (lock: Lock | null) => unknown) => {
-      const isFree = !this.held.has(name);
-      if (isFree) this.held.set(name, tab);
-      return Promise.resolve(act(isFree ? { name, mode: 'exclusive' } : null));
+    const request = async (name: string, _options: LockOptions, act: () => unknown) => {
+      // As if the time to wait for it were over.
+      if (this.held.has(name)) throw new DOMException('signal timed out', 'TimeoutError');
+      this.held.set(name, tab);
+      return act();
     };
     return { request } as NonNullable<Browser['locks']>;
   }
@@ -154,6 +155,21 @@ test('work of long ago is removed, work of another tab of yesterday is not', asy
   await tab.work.load();
   expect(await old.reload()).toBeNull();
   expect((await young.reload())?.text).toBe('young');
+});
+
+test('the work of the latest twenty other tabs is kept', async () => {
+  vi.useFakeTimers({ toFake: ['Date'] });
+  const tabs = Array.from({ length: 25 }, () => new Tab());
+  for (const [index, tab] of tabs.entries()) {
+    vi.setSystemTime(index * 1000);
+    await tab.keep(work(String(index)));
+  }
+  const first = tabs[0]!;
+  expect((await first.reload())?.text).toBe('0');
+  expect(shared.local.length).toBe(21);
+  expect(await tabs[4]!.reload()).toBeNull();
+  expect((await tabs[5]!.reload())?.text).toBe('5');
+  vi.useRealTimers();
 });
 
 test('clear leaves nothing of any tab, and what comes later is kept again', async () => {

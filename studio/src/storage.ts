@@ -31,8 +31,12 @@ interface Kept {
 
 const PREFIX = 'snell-studio:work:';
 const TAB = 'snell-studio:tab';
+const TABS_KEPT = 20;
 const DAYS_KEPT = 30;
 const DAY = 24 * 60 * 60 * 1000;
+
+/** So long, in milliseconds, a page may take to go after the one that it makes way for has come. */
+const FAREWELL = 500;
 
 const NO_ROOM = 'This browser has no room to keep the scene: a reload will lose your changes. Save it as a file.';
 const UNREADABLE = 'What this browser has kept of your last scene cannot be read, and is left out.';
@@ -72,11 +76,12 @@ export class WorkStorage {
     return { name: kept.name, text: kept.text, files };
   }
 
-  /** Keeps the work a moment later, if nothing newer comes. */
+  /** Keeps the work a moment later, if nothing newer comes; new files at once, since they come seldom and take their time. */
   save(work: Work): void {
     this.waiting = work;
     clearTimeout(this.timer);
-    this.timer = setTimeout(() => void this.flush(), this.delay);
+    const wait = sameFiles(work.files, this.stored.files) ? this.delay : 0;
+    this.timer = setTimeout(() => void this.flush(), wait);
   }
 
   /** Keeps what is waiting now: the text at once, since there is no later when a tab is closed. */
@@ -87,7 +92,7 @@ export class WorkStorage {
     if (this.id === null) return this.tab.then(() => this.flush());
     this.waiting = null;
     if (!sameFiles(work.files, this.stored.files)) {
-      const key = work.files.length > 0 ? crypto.randomUUID() : null;
+      const key = work.files.length > 0 ? randomName() : null;
       this.stored = { files: work.files, key };
       this.writing = this.writing.then(() => this.writeFiles(work.files, key));
     }
@@ -110,7 +115,7 @@ export class WorkStorage {
   private async claimTab(): Promise<string> {
     const own = attempt(() => this.browser.tab?.getItem(TAB)) ?? null;
     if (own !== null && (await this.claim(own))) return (this.id = own);
-    const id = crypto.randomUUID();
+    const id = randomName();
     await this.claim(id);
     const text = own === null ? null : attempt(() => this.browser.local?.getItem(PREFIX + own));
     if (text) attempt(() => this.browser.local!.setItem(PREFIX + id, text));
@@ -123,11 +128,11 @@ export class WorkStorage {
     const { locks } = this.browser;
     if (locks === undefined) return Promise.resolve(true);
     return new Promise((resolve) => {
-      const hold = (lock: Lock | null) => {
-        resolve(lock !== null);
-        return lock && new Promise(() => {});
+      const hold = () => {
+        resolve(true);
+        return new Promise(() => {});
       };
-      locks.request(TAB + id, { ifAvailable: true }, hold).catch(() => resolve(true));
+      locks.request(TAB + id, { signal: AbortSignal.timeout(FAREWELL) }, hold).catch(() => resolve(false));
     });
   }
 
@@ -171,10 +176,10 @@ export class WorkStorage {
 
   /** A tab that was closed may be opened again, but not for ever. */
   private removeOld(): void {
-    for (const key of this.keys()) {
-      const kept = keptIn(this.browser.local!.getItem(key) ?? '');
-      if (kept !== null && Date.now() - kept.time > DAYS_KEPT * DAY) attempt(() => this.browser.local!.removeItem(key));
-    }
+    const age = (key: string) => Date.now() - (keptIn(this.browser.local!.getItem(key) ?? '')?.time ?? 0);
+    const others = this.keys().filter((key) => key !== PREFIX + this.id).map((key) => ({ key, age: age(key) }));
+    const old = others.sort((a, b) => a.age - b.age).filter(({ age }, index) => age > DAYS_KEPT * DAY || index >= TABS_KEPT);
+    for (const { key } of old) attempt(() => this.browser.local!.removeItem(key));
   }
 
   /** Removes files that no tab names. */
@@ -214,6 +219,11 @@ function here(): Browser {
     database: attempt(() => window.indexedDB),
     locks: navigator.locks,
   };
+}
+
+/** `crypto.randomUUID` is missing on pages that come by plain HTTP. */
+function randomName(): string {
+  return Array.from(crypto.getRandomValues(new Uint8Array(16)), (byte) => byte.toString(16).padStart(2, '0')).join('');
 }
 
 function attempt<T>(act: () => T): T | undefined {

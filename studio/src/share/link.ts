@@ -27,7 +27,8 @@ const START = '#scene=';
 const VERSION = '1';
 /** Longer links are cut off on their way, by some programs that send or keep them. */
 export const MAX_LINK = 32 * 1024;
-/** A small link could become more than the memory holds. */
+/** A small link could become more than the memory holds. Browsers look only after each piece of what they decompress, so that it is
+ *  important as well that links are short. */
 const MAX_BYTES = 8 * 1024 * 1024;
 
 /** The fragment of a link to a scene. */
@@ -48,8 +49,9 @@ export async function encode({ name, text, files = [], view }: Shared): Promise<
 /** The scene of a fragment; nothing if the fragment means something else. */
 export async function decode(fragment: string): Promise<Shared | null> {
   // Some programs encode whatever is not a letter or a number.
-  const link = fragment.replace(/%3D/gi, '=').replace(/%2E/gi, '.');
+  const link = fragment.replace(/^#scene%3D/i, START).replace(/%2E/i, '.');
   if (!link.startsWith(START)) return null;
+  if (link.length > MAX_LINK) throw new LinkError(`This link has ${size(link.length)}, and no scene's has more than ${size(MAX_LINK)}.`);
   const [version, ...rest] = link.slice(START.length).split('.');
   if (version !== VERSION && /^\d+$/.test(version!)) {
     throw new LinkError('This link was made by a newer version of Snell Studio, which this one cannot read.');
@@ -115,7 +117,7 @@ function base64url(bytes: Uint8Array): string {
 }
 
 function fromBase64url(text: string): Uint8Array | null {
-  if (!/^[\w-]*=*$/.test(text)) return null;
+  if (!/^[\w-]*$/.test(text)) return null;
   try {
     return Uint8Array.from(atob(text.replaceAll('-', '+').replaceAll('_', '/')), (sign) => sign.charCodeAt(0));
   } catch {

@@ -175,3 +175,26 @@ test('a key says what it means', async () => {
   await page.locator('.cm-line', { hasText: 'max_depth' }).hover({ position: { x: 30, y: 8 } });
   await expect.poll(() => page.locator('.cm-explanation').innerText()).toContain('How many bounces may follow the camera ray. Left out, it is 32.');
 });
+
+test.each(['light', 'dark'] as const)('axe finds nothing wrong with it, %s', async (theme) => {
+  const dark = { paper: '#15181e', ink: '#e8eaee', quiet: '#9ea6b3', line: '#323945', accent: '#7db1ff', tint: '#1f242d', 'ray-refracted': '#4fd3e0', 'ray-inside': '#b59cff' };
+  await page.evaluate(([theme, dark]) => {
+    for (const [name, color] of Object.entries(theme === 'dark' ? dark : {})) document.documentElement.style.setProperty(`--${name}`, color);
+    window.editor.setTheme(theme);
+  }, [theme, dark] as const);
+  const line = lineOf('max_depth');
+  const findings = [{ code: 'W001', message: 'odd', place: { file: '', line, column: 1, end_line: line, end_column: 4 } }];
+  await page.evaluate((findings) => window.editor.setFindings(findings), findings);
+  await reveal(line, 1);
+  await page.keyboard.press('Enter');
+  await page.keyboard.press('ArrowUp');
+  await page.keyboard.press('Control+Space');
+  await page.locator('.cm-completionInfo').waitFor();
+  await page.addScriptTag({ path: path('../../node_modules/axe-core/axe.min.js') });
+  const violations = await page.locator('#place').evaluate(async (place) => {
+    const axe = (window as unknown as { axe: typeof import('axe-core') }).axe;
+    const { violations } = await axe.run(place);
+    return violations.map(({ id, nodes }) => `${id}: ${nodes.map(({ html, failureSummary }) => html + failureSummary).join('; ')}`);
+  });
+  expect(violations).toEqual([]);
+});

@@ -7,10 +7,10 @@ import { type Diagnostic, lintGutter, lintKeymap, setDiagnostics } from '@codemi
 import { highlightSelectionMatches, search, searchKeymap } from '@codemirror/search';
 import { Annotation, Compartment, EditorState, type Text } from '@codemirror/state';
 import {
-  drawSelection, EditorView, highlightActiveLine, highlightActiveLineGutter, hoverTooltip, keymap, lineNumbers, type Tooltip,
+  drawSelection, EditorView, highlightActiveLine, highlightActiveLineGutter, hoverTooltip, keymap, lineNumbers, type Rect, type Tooltip,
 } from '@codemirror/view';
-import { type KnownNames, type Suggestion, suggestionsAt } from './complete';
 import type { Finding } from '../engine/protocol';
+import { type KnownNames, type Suggestion, suggestionsAt } from './complete';
 import { type Lines, linesOf, minimalChange, offsetOf, withLines } from './lines';
 import { entryAt } from './schema';
 import { style, toml } from './style';
@@ -56,12 +56,13 @@ export class SourceEditor {
         toml,
         foldService.of(tableAt),
         codeFolding(),
-        autocompletion({ override: [completions(known)], icons: false }),
+        autocompletion({ override: [completions(known)], icons: false, positionInfo: besideOrBelow }),
         hoverTooltip(explanation),
         // Tab is not among them: it leaves the editor, as it leaves everything else.
         keymap.of([...completionKeymap, ...searchKeymap, ...foldKeymap, ...lintKeymap, ...defaultKeymap]),
         EditorState.readOnly.of(readOnly),
-        EditorView.contentAttributes.of({ 'aria-label': label, spellcheck: 'false' }),
+        // It can be focused anyway, but not all tools see that.
+        EditorView.contentAttributes.of({ 'aria-label': label, spellcheck: 'false', tabindex: '0' }),
         EditorView.domEventHandlers({ beforeinput: (event) => this.takeHistory(event) }),
         EditorView.updateListener.of((update) => {
           const isTyped = update.docChanged && !update.transactions.some((transaction) => transaction.annotation(fromOutside));
@@ -146,6 +147,13 @@ function completions(known: () => KnownNames): CompletionSource {
     const hasValue = explicit && suggestions[0]!.kind === 'value' && behind > 0;
     return hasValue ? { from, options, filter: false } : { from, options, validFor: /^[\w -]*$/ };
   };
+}
+
+/** Where the description of a completion goes: never over the other ones. */
+function besideOrBelow(_view: EditorView, list: Rect, _option: Rect, info: Rect, space: Rect): { style: string } {
+  if (list.right + info.right - info.left <= space.right) return { style: 'left: 100%; top: 0' };
+  const isRoomBelow = list.bottom + info.bottom - info.top <= space.bottom;
+  return { style: isRoomBelow ? 'left: 0; top: 100%' : 'left: 0; bottom: 100%' };
 }
 
 function asCompletion({ name, kind, insert, detail, description, isRequired }: Suggestion, behind: number): Completion {
