@@ -130,6 +130,9 @@ async function begin(store: Store, storage: WorkStorage): Promise<boolean> {
 
 function shortcut(event: KeyboardEvent, store: Store): void {
   if (!(event.ctrlKey || event.metaKey) || event.altKey) return;
+  // A field has an undo of its own, but for the source, whose history is the scene's.
+  const { target } = event;
+  if (target instanceof HTMLInputElement && ['search', 'text'].includes(target.type)) return;
   const key = event.key.toLowerCase();
   if (key === 'z') (event.shiftKey ? store.redo() : store.undo());
   else if (key === 'y') store.redo();

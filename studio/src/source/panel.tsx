@@ -18,8 +18,10 @@ export function SourcePanel({ store, glasses }: { store: Store; glasses: readonl
       let waiting: ReturnType<typeof setTimeout> | undefined;
       const editor = new SourceEditor(place.current!, {
         text: store.draft.value ?? store.revision.value?.text ?? '',
-        label: 'Source of the scene, in TOML. Escape, then Tab leaves it.',
+        label: 'Source of the scene, in TOML',
         onChange(text) {
+          // At once: an earlier text that is read meanwhile must not take the place of this one.
+          store.draft.value = text;
           clearTimeout(waiting);
           waiting = setTimeout(() => store.revise(text), CALM);
         },
@@ -31,7 +33,10 @@ export function SourcePanel({ store, glasses }: { store: Store; glasses: readonl
         effect(() => {
           if (store.draft.value === null) editor.setText(store.revision.value?.text ?? '');
         }),
-        effect(() => editor.setFindings([...store.refused.value, ...store.warnings.value])),
+        effect(() => {
+          const others = new Set(filesOf(store));
+          editor.setFindings([...store.refused.value, ...store.warnings.value].filter(({ place }) => place && !others.has(place.file)));
+        }),
         effect(() => editor.setTheme(store.theme.value === 'dark' || (store.theme.value === 'auto' && dark.matches) ? 'dark' : 'light')),
       ];
       end = () => {
