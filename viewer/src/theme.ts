@@ -1,6 +1,7 @@
 /** The colours of the drawing and of the text beside it, for a light and a dark page. */
 
 import type { RayKind } from './data';
+import { ON_DARK, ON_LIGHT } from './spectrum';
 
 export interface Theme {
   /** The page, and the middle and the rim of the drawing. */
@@ -16,6 +17,8 @@ export interface Theme {
   tint: string;
   bulb: string;
   rays: Record<RayKind | 'shadow', string>;
+  /** Lightness and chroma of rays of one wavelength. */
+  spectrum: [number, number];
   /** Of handles along x, y and z. */
   axes: [string, string, string];
 }
@@ -31,6 +34,7 @@ export const LIGHT: Theme = {
   tint: '#f0eee9',
   bulb: '#d79a00',
   rays: { camera: '#4a5568', mirror: '#d4541a', refracted: '#0a7d8c', inside: '#7048d6', shadow: '#a87400' },
+  spectrum: ON_LIGHT,
   axes: ['#c8321f', '#2f8a23', '#2a62d9'],
 };
 
@@ -45,6 +49,7 @@ export const DARK: Theme = {
   tint: '#1f242d',
   bulb: '#ffd66b',
   rays: { camera: '#c3ccd9', mirror: '#ff9a62', refracted: '#4fd3e0', inside: '#b59cff', shadow: '#e9bd4b' },
+  spectrum: ON_DARK,
   axes: ['#ff7a66', '#7bd66b', '#7fb0ff'],
 };
 
@@ -62,8 +67,9 @@ export function followTheme(scheme: Scheme, apply: (theme: Theme) => void): () =
 
 /** The same colours for the style sheet: `--ink`, `--ray-mirror` and so on. */
 export function setProperties(element: HTMLElement, theme: Theme): void {
-  const { rays, axes: _, ...plain } = theme;
+  const { rays, axes: _, spectrum, ...plain } = theme;
   for (const [name, color] of Object.entries(plain)) element.style.setProperty(`--${name}`, color);
   for (const [kind, color] of Object.entries(rays)) element.style.setProperty(`--ray-${kind}`, color);
+  element.style.setProperty('--spectrum', `${spectrum[0]} ${spectrum[1]}`);
   element.style.colorScheme = theme === DARK ? 'dark' : 'light';
 }

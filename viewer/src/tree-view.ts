@@ -1,8 +1,8 @@
 /** The ray tree as text: an ARIA tree whose rows are made when they are unfolded. */
 
 import { cssColor } from './color';
-import type { Transfer } from './data';
-import { element, stroke, swatch } from './dom';
+import type { Color, Transfer } from './data';
+import { element, rayStroke, swatch } from './dom';
 import { treeAction } from './keyboard';
 import type { Row, TreeModel } from './model';
 import { percent, rayTitle } from './words';
@@ -14,6 +14,8 @@ export interface TreeEvents {
 
 /** Deeper rows are not indented more: a narrow panel must show their text. */
 const MAX_INDENT = 10;
+/** While generations are shown one after the other. */
+const MAX_UNFOLDED = 100;
 
 export class TreeView {
   readonly root = element('div', { role: 'tree', class: 'tree', 'aria-label': 'Ray tree' });
@@ -21,6 +23,8 @@ export class TreeView {
   private readonly expanded: Set<number>;
   /** The one row that Tab reaches. */
   private current: number | undefined;
+  /** Rays of later generations have no row. */
+  private last = Infinity;
 
   constructor(
     private readonly model: TreeModel,
@@ -32,21 +36,28 @@ export class TreeView {
     this.render();
     this.root.addEventListener('keydown', (event) => this.onKey(event));
     this.root.addEventListener('click', (event) => this.onClick(event));
-    this.root.addEventListener('pointerover', (event) => this.events.hover(rowId(event.target)));
+    this.root.addEventListener('pointerover', (event) => this.events.hover(rayId(event.target)));
     this.root.addEventListener('pointerleave', () => this.events.hover(null));
-    this.root.addEventListener('focusin', (event) => this.events.hover(rowId(event.target)));
+    this.root.addEventListener('focusin', (event) => this.events.hover(rayId(event.target)));
     this.root.addEventListener('focusout', () => this.events.hover(null));
   }
 
   /** Unfolds what is above the selected row, and scrolls to it. */
   select(id: number | null): void {
     if (id !== null) {
-      for (const above of this.model.path(id).slice(0, -1)) this.expanded.add(above);
+      for (const above of this.model.above(id)) this.expanded.add(above);
       this.current = id;
     }
     this.render();
-    for (const [row, item] of this.rows) item.setAttribute('aria-selected', String(row === id));
+    for (const [row, item] of this.rows) if (row >= 0) item.setAttribute('aria-selected', String(row === id));
     if (id !== null) this.rows.get(id)!.scrollIntoView({ block: 'nearest' });
+  }
+
+  /** Shows the rays up to a generation, with those unfolded that matter. */
+  showUntil(generation: number): void {
+    this.last = generation;
+    for (const id of this.model.strongest(MAX_UNFOLDED)) if (this.model.generation(id) < generation) this.expanded.add(id);
+    this.render();
   }
 
   hover(id: number | null): void {
@@ -55,12 +66,13 @@ export class TreeView {
 
   private onKey(event: KeyboardEvent): void {
     if (event.altKey || event.ctrlKey || event.metaKey || this.current === undefined) return;
-    const rows = this.model.rows(this.expanded);
-    const action = treeAction(event.key, rows, this.current, (id) => rayTitle(this.model.nodes[id]!));
+    const rows = this.model.rows(this.expanded, this.last);
+    const action = treeAction(event.key, rows, this.current, (id) => this.title(id));
     if (action === null) return;
     event.preventDefault();
-    if (action.do === 'select') return this.events.select(action.id);
+    if (action.do === 'select' && action.id >= 0) return this.events.select(action.id);
     if (action.do === 'focus') this.current = action.id;
+    else if (action.do === 'select') this.fold(action.id, this.expanded.has(action.id));
     else for (const id of action.ids) this.fold(id, action.do === 'collapse');
     this.render();
     this.rows.get(this.current)!.focus();
@@ -70,7 +82,8 @@ export class TreeView {
     const id = rowId(event.target);
     if (id === null) return;
     this.current = id;
-    if ((event.target as Element).closest('.twist') && this.model.children(id).length > 0) {
+    const twist = (event.target as Element).closest('.twist') !== null && this.model.children(id).length > 0;
+    if (id < 0 || twist) {
       this.fold(id, this.expanded.has(id));
       this.render();
     } else {
@@ -86,7 +99,7 @@ export class TreeView {
 
   /** Rows that stay are not moved, so that they keep the focus. */
   private render(): void {
-    const rows = this.model.rows(this.expanded);
+    const rows = this.model.rows(this.expanded, this.last);
     if (!rows.some((row) => row.id === this.current)) this.current = rows[0]?.id;
     const shown = new Set(rows.map((row) => row.id));
     for (const [id, item] of this.rows) if (!shown.has(id)) item.remove();
@@ -94,6 +107,7 @@ export class TreeView {
     for (const row of rows) {
       const item = this.rows.get(row.id) ?? this.makeRow(row);
       if (row.expandable) item.setAttribute('aria-expanded', String(row.expanded));
+      else item.removeAttribute('aria-expanded');
       item.tabIndex = row.id === this.current ? 0 : -1;
       const place: Element | null = previous === null ? this.root.firstElementChild : previous.nextElementSibling;
       if (place !== item) this.root.insertBefore(item, place);
@@ -102,34 +116,49 @@ export class TreeView {
   }
 
   private makeRow(row: Row): HTMLElement {
-    const node = this.model.nodes[row.id]!;
     const share = percent(this.model.share(row.id));
-    const title = rayTitle(node);
+    const title = this.title(row.id);
     const item = element(
       'div',
       {
         role: 'treeitem',
-        class: 'row',
+        class: row.id < 0 ? 'row others' : 'row',
         'data-id': row.id,
         'aria-level': row.level,
         'aria-setsize': row.siblings,
         'aria-posinset': row.place,
-        'aria-selected': false,
+        // What is no ray cannot be selected.
+        ...(row.id < 0 ? {} : { 'aria-selected': false }),
         'aria-label': `${title}, ${share} of the light`,
       },
       element('span', { class: 'twist', 'aria-hidden': true }),
-      stroke(node.kind),
+      ...(row.id < 0 ? [] : [rayStroke(this.model.nodes[row.id]!)]),
       element('span', { class: 'title' }, title),
-      swatch(cssColor(node.subtotal, this.transfer)),
+      swatch(cssColor(this.subtotal(row.id), this.transfer)),
       element('span', { class: 'share' }, share),
     );
     item.style.setProperty('--indent', String(Math.min(row.level - 1, MAX_INDENT)));
     this.rows.set(row.id, item);
     return item;
   }
+
+  private title(id: number): string {
+    return id < 0 ? `${this.model.others(~id).length} others` : rayTitle(this.model.nodes[id]!);
+  }
+
+  private subtotal(id: number): Color {
+    const { nodes } = this.model;
+    if (id >= 0) return nodes[id]!.subtotal;
+    return this.model.others(~id).reduce<Color>((sum, other) => sum.map((value, channel) => value + nodes[other]!.subtotal[channel]!) as Color, [0, 0, 0]);
+  }
 }
 
 function rowId(target: EventTarget | null): number | null {
   const row = target instanceof Element ? target.closest<HTMLElement>('.row') : null;
   return row === null ? null : Number(row.dataset.id);
+}
+
+function rayId(target: EventTarget | null): number | null {
+  const id = rowId(target);
+  return id !== null && id >= 0 ? id : null;
 }

@@ -76,7 +76,7 @@ export class Viewer {
   private pixel: Pixel | null = null;
   private stopTheme: () => void = () => {};
   private theme: Theme = LIGHT;
-  private state = { selected: null as number | null, hovered: null as number | null, allShadows: false };
+  private state = { selected: null as number | null, hovered: null as number | null, allShadows: false, generation: Infinity };
   /** What the colours of the theme are set on. */
   private readonly themed: HTMLElement[] = [this.frame];
 
@@ -91,6 +91,7 @@ export class Viewer {
       select: (id) => this.inPanel(() => this.select(id)),
       hover: (id) => this.inPanel(() => this.hover(id)),
       sample: () => this.draw(this.panel.document, this.panel.model, null),
+      step: () => this.inPanel(() => this.step()),
     });
     this.drawing = this.makeDrawing();
     if (options.header !== false) this.frame.append(this.header);
@@ -243,7 +244,7 @@ export class Viewer {
     this.stopTheme();
     for (const listeners of Object.values(this.listeners)) listeners.clear();
     this.drawing?.dispose();
-    this.panel.root.remove();
+    this.panel.dispose();
     this.host.remove();
   }
 
@@ -259,11 +260,16 @@ export class Viewer {
     this.frame.classList.toggle('alone', this.options.panel === false || this.panel.document === null);
     this.showPixels();
     const [before, hovered] = [this.state.selected, this.state.hovered];
-    Object.assign(this.state, { selected, hovered: null });
+    Object.assign(this.state, { selected, hovered: null, generation: this.panel.model === model ? this.panel.generation : Infinity });
     if (this.panel.model === model && this.panel.selected !== selected) this.panel.select(selected);
     this.update();
     if (hovered !== null) this.tell('hover', null);
     if (selected !== before) this.tell('select', selected);
+  }
+
+  private step(): void {
+    this.state.generation = this.panel.generation;
+    this.update();
   }
 
   /** What is done to the panel is about its own rays: they are drawn again if others are. */
@@ -392,7 +398,10 @@ export class Viewer {
         ...(this.options.toolbar === 'studio'
           ? []
           : [button('Reset', () => this.reset()), button('Look through the camera', () => this.lookThroughCamera()), this.lightButtons]),
-        checkbox('Names', true, (shown) => (drawing.names.root.hidden = !shown)),
+        checkbox('Names', true, (shown) => {
+          drawing.names.shown = shown;
+          drawing.stage.requestFrame();
+        }),
         this.pictureBox,
         shadows,
       );

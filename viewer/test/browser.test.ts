@@ -93,7 +93,7 @@ describe('the drawing', () => {
     // Fonts differ between machines.
     await page.getByLabel('Names').uncheck();
     const hide = () => document.querySelector('#app > div')!.shadowRoot!.append(Object.assign(document.createElement('style'), {
-      textContent: '.toolbar, .footer { opacity: 0 }',
+      textContent: '.toolbar, .footer, .names { opacity: 0 }',
     }));
     await page.evaluate(hide);
     const shot = async (name: string) => {

@@ -1,6 +1,7 @@
 /** The scene and the rays of one sample in 3D. */
 
 import { Vector3 } from 'three';
+import { type Figure, figureOf } from '../angles';
 import type { RayNode, RayTreeDocument, ViewScene } from '../data';
 import { element } from '../dom';
 import type { Editing, ObjectRef } from '../editing';
@@ -36,6 +37,8 @@ const MAX_RAYS = 400;
 const MAX_NAMES = 24;
 /** Of a ray that leaves the scene, in radii of the drawing. */
 const REACH = 0.55;
+/** Of the arcs of angles, in the same. */
+const ANGLES = 0.09;
 /** Pixels that the pointer may move between down and up in a click. */
 const CLICK = 4;
 
@@ -65,6 +68,7 @@ export class Drawing {
   private readonly editor: Editor;
   private selected: ObjectRef | null = null;
   private lines: PickedLine[] = [];
+  private generation = Infinity;
   private readonly target = element('span', { class: 'target', 'aria-hidden': true, hidden: true });
   private pressed = new Vector3();
   private pictures = 0;
@@ -182,7 +186,10 @@ export class Drawing {
   }
 
   show(state: RayState): void {
-    this.rays.show(this.sample, state, this.theme);
+    this.generation = state.generation;
+    const figure = this.figure(state);
+    this.rays.show(this.sample, figure, state, this.theme);
+    this.names.set('angles', (figure?.arcs ?? []).map(({ at, text }) => ({ text, at: new Vector3(...at), kind: 'angle', offset: 0, rank: 0 })));
     this.names.setImportant(new Set([this.selected?.name ?? '', ...[state.selected, state.hovered].map((id) => this.objectMetBy(id))]));
     this.stage.canvas.classList.toggle('on-ray', state.hovered !== null);
     this.stage.requestFrame();
@@ -262,6 +269,17 @@ export class Drawing {
     this.lines = drawn.map((id) => ({ id, ...rayLine(nodes[id]!, reach) }));
   }
 
+  /** The angles at the end of the selected ray. */
+  private figure({ selected, generation }: RayState): Figure | null {
+    if (this.sample === null || selected === null || this.sample.model.generation(selected) > generation) return null;
+    const { model, nodes } = this.sample;
+    const node = nodes[selected]!;
+    if (node.hit === null) return null;
+    const { normal, t } = node.hit;
+    const back = model.children(selected).some((child) => nodes[child]!.dir.reduce((sum, value, axis) => sum + value * normal[axis]!, 0) > 0);
+    return figureOf(node, back, Math.min(ANGLES * this.extent.radius, t / 2));
+  }
+
   private objectMetBy(id: number | null): string {
     return (id !== null && this.model?.nodes[id]?.hit?.object) || '';
   }
@@ -308,7 +326,8 @@ export class Drawing {
 
   private rayAt(event: MouseEvent): number | null {
     const { x: width, y: height } = this.stage.uniforms.size.value;
-    return pick(this.lines, ...this.stage.pixelOf(event), this.stage.projection, width, height);
+    const lines = this.lines.filter(({ id }) => this.model!.generation(id) <= this.generation);
+    return pick(lines, ...this.stage.pixelOf(event), this.stage.projection, width, height);
   }
 
   /** The pixel of the picture or the object under the pointer, whichever is nearer. */

@@ -11,7 +11,7 @@ const EDGE = 4;
 export interface Label {
   text: string;
   at: Vector3;
-  kind: 'object' | 'light' | 'angle' | 'axis';
+  kind: 'object' | 'light' | 'angle';
   /** Pixels down, to stand beside a mark. */
   offset: number;
   /** Those with a smaller one stay where they are when names would lie over each other. */
@@ -36,6 +36,8 @@ interface Box {
 export class Names {
   /** The text alternative of the drawing names them too. */
   readonly root = element('div', { class: 'names', 'aria-hidden': true });
+  /** Are the names of things shown? */
+  shown = true;
   /** By what they belong to. */
   private readonly groups = new Map<string, Shown[]>();
   /** They come before all others. */
@@ -63,7 +65,6 @@ export class Names {
   }
 
   update(camera: PerspectiveCamera, width: number, height: number): void {
-    if (this.root.hidden) return;
     const taken: Box[] = [];
     const rank = ({ text, rank }: Label) => (this.important.has(text) ? -1 : rank);
     const depths = new Map(this.all().map((name) => [name, name.label.at.clone().project(camera)]));
@@ -71,7 +72,7 @@ export class Names {
     for (const name of order) {
       const { label, element } = name;
       const place = depths.get(name)!;
-      element.hidden = Math.abs(place.z) > 1;
+      element.hidden = Math.abs(place.z) > 1 || (!this.shown && label.kind !== 'angle');
       if (element.hidden) continue;
       if (name.size[0] === 0) name.size = [element.offsetWidth, element.offsetHeight];
       const [w, h] = name.size;
@@ -92,7 +93,6 @@ export class Names {
 
   /** The same for a picture of the drawing. */
   paint(context: CanvasRenderingContext2D, scale: number): void {
-    if (this.root.hidden) return;
     context.setTransform(scale, 0, 0, scale, 0, 0);
     context.textAlign = 'center';
     context.textBaseline = 'middle';

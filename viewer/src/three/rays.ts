@@ -1,9 +1,11 @@
 /** The rays of a pixel as lines, the selected one and its way through the scene brought forward. */
 
 import { Group } from 'three';
+import type { Figure } from '../angles';
 import type { RayNode, Vec3 } from '../data';
 import { lineOpacity, lineWidth, rayLine, shadowLines, stepLine } from '../lines';
 import type { TreeModel } from '../model';
+import { spectralColor } from '../spectrum';
 import type { Theme } from '../theme';
 import { type DrawnLine, LineSet, type ScreenUniforms } from './line-set';
 import { type Mark, MarkSet } from './marks';
@@ -12,6 +14,8 @@ export interface RayState {
   selected: number | null;
   hovered: number | null;
   allShadows: boolean;
+  /** Later rays are not shown. */
+  generation: number;
 }
 
 /** The rays of one sample, and where they are drawn. */
@@ -40,9 +44,10 @@ export class Rays {
     this.group.add(this.lines.group, this.marks.points);
   }
 
-  show(sample: DrawnSample | null, state: RayState, theme: Theme): void {
+  /** With the figure of angles at the selected ray. */
+  show(sample: DrawnSample | null, figure: Figure | null, state: RayState, theme: Theme): void {
     const { lines, marks } = sample === null ? { lines: [], marks: [] } : new Look(sample, state, theme);
-    this.lines.set(lines);
+    this.lines.set([...lines, ...(figure === null ? [] : drawnFigure(figure, theme))]);
     this.marks.set(marks);
   }
 
@@ -52,6 +57,12 @@ export class Rays {
   }
 }
 
+function drawnFigure({ normal, arcs }: Figure, theme: Theme): DrawnLine[] {
+  const look = { color: theme.ink, width: 1.6, opacity: 0.9 };
+  const pieces = arcs.flatMap(({ points }) => points.slice(1).map((to, index): DrawnLine => ({ from: points[index]!, to, open: false, ...look })));
+  return [{ ...normal, ...look, width: 1.3, dashed: true }, ...pieces];
+}
+
 /** What the rays look like at a time. */
 class Look {
   readonly lines: DrawnLine[];
@@ -59,12 +70,12 @@ class Look {
 
   constructor(
     private readonly sample: DrawnSample,
-    { selected, hovered, allShadows }: RayState,
+    { selected, hovered, allShadows, generation }: RayState,
     private readonly theme: Theme,
   ) {
     const { model, drawn } = sample;
     const way = new Set(selected === null ? [] : model.path(selected));
-    const ids = [...new Set([...drawn, ...way])];
+    const ids = [...new Set([...drawn, ...way])].filter((id) => model.generation(id) <= generation);
     // The important ones are drawn last, over the others.
     ids.sort((a, b) => Number(way.has(a)) - Number(way.has(b)) || model.share(a) - model.share(b));
     const dim = (id: number) => (way.size === 0 || way.has(id) ? 1 : DIMMED);
@@ -100,7 +111,7 @@ class Look {
     const node = this.node(id);
     const line = node.parent === null ? null : stepLine(this.node(node.parent), node);
     const share = this.share(id);
-    return line === null ? [] : [{ ...line, color: this.theme.rays.inside, width: lineWidth(share), opacity: dim * lineOpacity(share) }];
+    return line === null ? [] : [{ ...line, color: node.band_nm === null ? this.theme.rays.inside : this.color(node), width: lineWidth(share), opacity: dim * lineOpacity(share) }];
   }
 
   private halo(id: number, selected: boolean): DrawnLine {
@@ -121,7 +132,7 @@ class Look {
   }
 
   private color(node: RayNode): string {
-    return this.theme.rays[node.kind];
+    return node.band_nm === null ? this.theme.rays[node.kind] : spectralColor(node.band_nm, this.theme.spectrum);
   }
 
   private node(id: number): RayNode {
