@@ -94,6 +94,8 @@ export class Viewer {
       step: () => this.inPanel(() => this.step()),
     });
     this.drawing = this.makeDrawing();
+    // The page of a studio says how tall it is, also where it is narrow.
+    this.frame.classList.toggle('fills', options.toolbar === 'studio');
     if (options.header !== false) this.frame.append(this.header);
     this.frame.append(this.view());
     if (options.panel !== false) this.frame.append(this.panel.root);

@@ -116,10 +116,10 @@ export function SpaceView({ store, onSpace }: { store: Store; onSpace(space: Spa
     };
   }, [ready]);
   return (
-    <>
-      <div ref={place} class="space" />
+    <div class="space">
       {ready && <SpaceTools store={store} space={shown} />}
-    </>
+      <div ref={place} class="drawing" />
+    </div>
   );
 }
 
