@@ -96,6 +96,7 @@ export class Store {
   readonly engine: Engine;
   private readonly history = new History<Base>();
   private readonly steps: Step[] = [];
+  private started: Promise<void> | null = null;
   private running = false;
   private covered: (() => void) | null = null;
   private begun = 0;
@@ -125,10 +126,12 @@ export class Store {
     );
   }
 
-  /** Starts the engine. */
-  async start(): Promise<void> {
-    await this.engine.start();
-    this.busy.value = null;
+  /** Starts the engine, once. */
+  start(): Promise<void> {
+    this.started ??= this.engine.start().then(() => {
+      this.busy.value = null;
+    });
+    return this.started;
   }
 
   /** Opens a scene in place of the one that is shown, with a text that it has been given since. Rejects with a `Refusal`. */
@@ -277,6 +280,7 @@ export class Store {
 
   private async run(): Promise<void> {
     this.running = true;
+    await this.start();
     for (let step = this.steps.shift(); step !== undefined; step = this.steps.shift()) {
       const slow = setTimeout(() => (this.busy.value = 'Reading the scene …'), 150);
       try {

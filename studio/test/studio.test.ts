@@ -30,7 +30,7 @@ async function on(fragment: string, act: (page: Page) => Promise<void>, options:
 }
 
 function nativeHash(name: string, ...args: string[]): string {
-  const lines = execFileSync('sh', ['-c', `exec "$@" 2>&1`, 'sh', snell, 'render', name, ...args, '--progress', 'json', '-o', '/dev/null', '--format', 'ppm'], { encoding: 'utf8' });
+  const lines = execFileSync('sh', ['-c', `exec "$@" 2>&1`, 'sh', snell, 'render', name, ...args, '--progress', 'json', '-o', `${OUT}native.npy`], { encoding: 'utf8' });
   return (JSON.parse(lines.trim().split('\n').at(-1)!) as { film_sha256: string }).film_sha256;
 }
 
