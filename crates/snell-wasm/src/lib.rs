@@ -2,15 +2,17 @@
 //!
 //! ```text
 //!  JavaScript                        snell-wasm                                       the library
-//!  Session.load(name, text, files) ▶ session: a scene, its files, its world ────────▶ load_bytes, CompiledScene
-//!  session.edit(key, value) ───────▶ the same with another value ──────────────────▶ CompiledScene::edited
-//!  begin(options), step(ms) ───────▶ picture: a film that comes tile by tile ──────▶ Renderer
+//!  Session.load(name, text, files) ▶ session: a scene as text, its files, its world ▶ load_bytes, CompiledScene
+//!  edit(changes), revise(text) ────▶ the same with another text ────────────────────▶ scene_file::rewrite, CompiledScene::edited
+//!  begin(options), step(ms) ───────▶ picture: pieces that come tile by tile ────────▶ Renderer
 //!  rgba(x, y, width, height) ◀────── copies of its numbers ◀──────────────────────── Film, Encoding
 //!  explain(x, y), view() ◀────────── JSON ◀───────────────────────────────────────── explain, ViewScene
 //! ```
 //!
-//! An instance of the module has one thread. A pool of workers has an instance each: they render parts of the picture
-//! (`crop`), and one of them may gather what they have made (`gather`, `put`).
+//! The scene is its text: every edit changes that, and the text is read again, so that the two cannot disagree.
+//!
+//! An instance of the module has one thread. A pool of workers has an instance each: they render a share of the picture
+//! (`share`), and one of them may gather what they have made (`gather`, `put`).
 //!
 //! ```js
 //! import init, { Session } from "./snell_wasm.js";
@@ -31,5 +33,6 @@ compile_error!("this is to be built with simd128: is RUSTFLAGS set, or .cargo/co
 mod findings;
 mod page;
 mod picture;
+mod pieces;
 mod ready;
 mod session;

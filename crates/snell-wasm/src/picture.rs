@@ -1,11 +1,12 @@
 //! A picture that comes tile by tile, rendered here or gathered from others.
 
 use crate::page::now;
+use crate::pieces::{Pieces, cut};
 use serde::Deserialize;
 use snell::film::{BYTES_PER_PIXEL, Crop, Film, Rgb};
-use snell::render::{Options, Passes, Progress, RenderError, Renderer};
+use snell::render::{Options, Passes, Progress, RenderError};
 use snell::scene::{Integrator, Shadows, Warning};
-use snell::trace::Tile;
+use snell::trace::{Statistics, Tile};
 use snell::world::CompiledScene;
 use snell_formats::recipe::Changes;
 use snell_formats::{Report, memory};
@@ -22,6 +23,8 @@ pub struct Asked {
     /// The first sample of every so many-th pixel comes first; left out, each tile comes with all of its samples.
     coarsest: Option<u32>,
     crop: Option<Crop>,
+    /// The number of a share, from 0, and how many there are.
+    share: Option<[u32; 2]>,
 }
 
 impl Asked {
@@ -31,15 +34,15 @@ impl Asked {
         // As an object alone: serde would take a list for its values.
         let object: serde_json::Result<serde_json::Map<_, _>> = serde_json::from_str(options);
         object.and_then(|object| serde_json::from_value(object.into())).map_err(|e| {
-            let help = "like { \"size\": [256, 256], \"coarsest\": 8 }; there are size, spp, depth, integrator, shadows, coarsest, crop";
+            let help = "like { \"size\": [256, 256], \"coarsest\": 8 }; there are size, spp, depth, integrator, shadows, coarsest, crop, \
+                        share";
             Report::error(format!("these are no options of a picture: {e}")).help(help)
         })
     }
 
-    /// What makes it another picture than that of the scene with these edits.
-    pub fn changes(&self, edits: &[String]) -> Changes {
+    /// What makes it another picture than that of the scene.
+    pub fn changes(&self) -> Changes {
         Changes {
-            set: edits.to_vec(),
             size: self.size,
             crop: self.crop,
             spp: self.spp,
@@ -57,10 +60,10 @@ impl Asked {
 
 /// A picture, or the part of it that there is.
 pub enum Picture {
-    /// It is rendered here.
-    Rendered(Box<Renderer<'static>>),
-    /// Others render it.
-    Gathered(Film),
+    /// It is rendered here, all of it or a share.
+    Rendered(Pieces),
+    /// Others render it, and tell what they have traced for it.
+    Gathered(Film, Box<Statistics>),
 }
 
 /// Sums of samples, and the light that was lost: at most so many bytes for each pixel, while passes refine it.
@@ -71,75 +74,101 @@ impl Picture {
     pub fn begin(compiled: &CompiledScene, asked: &Asked) -> Result<Self, Report> {
         let options = Options { crop: asked.crop, passes: asked.passes(), ..Options::default() };
         let of_passes = if options.passes == Passes::WholeTiles { 0 } else { BYTES_OF_PASSES };
-        enough_memory(compiled, &options, BYTES_PER_PIXEL + of_passes)?;
-        let renderer = Renderer::new(compiled.shared_world(), compiled.settings(), &options).map_err(refused)?;
-        Ok(Self::Rendered(Box::new(renderer)))
+        let crop = options.crop_of(compiled.world()).map_err(refused)?;
+        let [share, shares] = asked.share.unwrap_or([0, 1]);
+        if share >= shares {
+            return Err(Report::error(format!("there is no share {share} of {shares}")).help("shares count from 0"));
+        }
+        enough_memory(crop, shares, BYTES_PER_PIXEL + of_passes)?;
+        let pieces = match asked.share {
+            Some(share) => Pieces::begin(compiled, &options, cut(crop, share)),
+            None => Pieces::begin(compiled, &options, std::iter::once(crop)),
+        };
+        pieces.map(Self::Rendered).map_err(refused)
     }
 
     /// Begins one that others render.
     pub fn gather(compiled: &CompiledScene, asked: &Asked) -> Result<Self, Report> {
         let options = Options { crop: asked.crop, ..Options::default() };
-        enough_memory(compiled, &options, BYTES_PER_PIXEL)?;
         let crop = options.crop_of(compiled.world()).map_err(refused)?;
-        Film::new(compiled.world().camera.size, crop).map(Self::Gathered).map_err(|error| refused(error.into()))
+        enough_memory(crop, 1, BYTES_PER_PIXEL)?;
+        let film = Film::new(compiled.world().camera.size, crop).map_err(|error| refused(error.into()))?;
+        Ok(Self::Gathered(film, Box::default()))
     }
 
-    pub fn film(&self) -> &Film {
+    /// The picture, if it is not only a share.
+    pub fn film(&self) -> Option<&Film> {
         match self {
-            Self::Rendered(renderer) => renderer.film(),
-            Self::Gathered(film) => film,
+            Self::Rendered(pieces) => pieces.whole(),
+            Self::Gathered(film, _) => Some(film),
+        }
+    }
+
+    /// A part of it. A share has those that lie within one of its pieces.
+    pub fn part(&self, part: Crop) -> Option<Film> {
+        match self {
+            Self::Rendered(pieces) => pieces.part(part),
+            Self::Gathered(film, _) => film.part(part),
         }
     }
 
     pub fn is_finished(&self) -> bool {
         match self {
-            Self::Rendered(renderer) => renderer.is_finished(),
-            Self::Gathered(film) => film.is_finished(),
+            Self::Rendered(pieces) => pieces.is_finished(),
+            Self::Gathered(film, _) => film.is_finished(),
         }
     }
 
-    /// How far it is. Of what others have rendered only pixels are known.
+    /// How far it is. Of what others have rendered only finished pixels count.
     pub fn progress(&self) -> Progress {
         match self {
-            Self::Rendered(renderer) => renderer.progress(),
-            Self::Gathered(film) => Progress {
+            Self::Rendered(pieces) => pieces.progress(),
+            Self::Gathered(film, statistics) => Progress {
                 pixels: film.finished.iter().filter(|finished| **finished).count() as u64,
                 total_pixels: film.finished.len() as u64,
-                rays: 0,
+                rays: statistics.rays.total(),
             },
+        }
+    }
+
+    /// What was traced for it.
+    pub fn statistics(&self) -> Statistics {
+        match self {
+            Self::Rendered(pieces) => pieces.statistics(),
+            Self::Gathered(_, statistics) => Statistics::clone(statistics),
         }
     }
 
     /// What is odd about what was rendered.
     pub fn warnings(&self, compiled: &CompiledScene) -> Vec<Warning> {
-        match self {
-            Self::Rendered(renderer) => {
-                snell::render::warnings(&renderer.statistics(), compiled.world(), &compiled.settings())
-            }
-            Self::Gathered(_) => Vec::new(),
-        }
+        snell::render::warnings(&self.statistics(), compiled.world(), &compiled.settings())
     }
 
     /// Renders tile after tile until the time is over, at least one. Returns which parts of the picture have changed.
     pub fn step(&mut self, milliseconds: f64) -> Vec<Changed> {
-        let Self::Rendered(renderer) = self else { return Vec::new() };
+        let Self::Rendered(pieces) = self else { return Vec::new() };
         let (start, mut changed) = (now(), Vec::new());
-        loop {
-            let tiles = renderer.step(1);
-            let crop = renderer.film().crop;
-            changed.extend(tiles.iter().map(|tile| Changed::of(tile, &crop)));
-            let is_over = now() - start >= milliseconds || milliseconds.is_nan();
-            if is_over || renderer.is_finished() {
-                return changed;
+        while let Some((tiles, piece)) = pieces.step() {
+            changed.extend(tiles.iter().map(|tile| Changed::of(tile, &piece)));
+            if now() - start >= milliseconds || milliseconds.is_nan() {
+                break;
             }
         }
+        changed
     }
 
-    /// Takes what another instance has rendered of a gathered picture.
-    pub fn put(&mut self, part: Crop, values: &[f64]) -> Result<(), Report> {
-        let Self::Gathered(film) = self else {
-            return Err(Report::error("this picture is rendered here, and takes no parts from elsewhere"));
-        };
+    /// Takes what another instance has traced for a gathered picture.
+    pub fn put_statistics(&mut self, text: &str) -> Result<(), Report> {
+        let Self::Gathered(_, all) = self else { return Err(rendered_here()) };
+        let statistics: Statistics =
+            serde_json::from_str(text).map_err(|e| Report::error(format!("these are no statistics: {e}")))?;
+        all.merge(&statistics);
+        Ok(())
+    }
+
+    /// Takes what another instance has rendered of a gathered picture, with all of its samples or as far as it has come.
+    pub fn put(&mut self, part: Crop, values: &[f64], finished: bool) -> Result<(), Report> {
+        let Self::Gathered(film, _) = self else { return Err(rendered_here()) };
         let whole = film.crop;
         if values.len() as u64 != 3 * u64::from(part.width) * u64::from(part.height) || !is_within(part, whole) {
             let Crop { x, y, width, height } = part;
@@ -151,11 +180,15 @@ impl Picture {
         for row in part.y - whole.y..part.y - whole.y + part.height {
             let start = row as usize * film.width() + (part.x - whole.x) as usize;
             let range = start..start + part.width as usize;
-            film.finished[range.clone()].fill(true);
+            film.finished[range.clone()].fill(finished);
             film.pixels[range].iter_mut().zip(&mut colors).for_each(|(pixel, color)| *pixel = color);
         }
         Ok(())
     }
+}
+
+fn rendered_here() -> Report {
+    Report::error("this picture is rendered here, and takes nothing from elsewhere")
 }
 
 /// Does a rectangle, which is not empty, lie within another?
@@ -171,9 +204,9 @@ fn refused(error: RenderError) -> Report {
 }
 
 /// Refuses what would not fit into the 4 GiB of an instance: where memory cannot be had, it traps.
-fn enough_memory(compiled: &CompiledScene, options: &Options<'_>, bytes_per_pixel: u64) -> Result<(), Report> {
-    let Crop { width, height, .. } = options.crop_of(compiled.world()).map_err(refused)?;
-    let needed = u64::from(width).saturating_mul(u64::from(height)).saturating_mul(bytes_per_pixel);
+fn enough_memory(Crop { width, height, .. }: Crop, shares: u32, bytes_per_pixel: u64) -> Result<(), Report> {
+    let pixels = (u64::from(width) * u64::from(height)).div_ceil(u64::from(shares));
+    let needed = pixels.saturating_mul(bytes_per_pixel);
     memory::check(&format!("a picture of {width} x {height} pixels"), needed)
         .or_else(|report| if is_there(needed) { Ok(()) } else { Err(report) })
         .map_err(|report| report.help("choose a smaller size, or render a part (crop)"))

@@ -1,53 +1,67 @@
 //! A scene with its files, read and compiled.
 
 use snell::geometry::bvh::Quality;
-use snell::scene::{Scene, WarningCode};
+use snell::scene::WarningCode;
 use snell::world::CompiledScene;
 use snell_formats::files::InMemory;
 use snell_formats::load::{Cache, Kind, load_bytes, load_text};
 use snell_formats::recipe::{Changes, Recipe};
-use snell_formats::{LoadOptions, Loaded, Report, Source};
-use std::path::Path;
+use snell_formats::scene_file::{self, Syntax};
+use snell_formats::{LoadOptions, Loaded, Report, Source, builtin};
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// What a session was given.
+/// The text of a scene, and what it is read with.
+#[derive(Clone)]
 pub struct Given {
-    pub scene: GivenScene,
+    /// In TOML.
+    pub source: Source,
+    /// File names in it are relative to this one.
+    pub folder: PathBuf,
     pub files: Arc<InMemory>,
     /// Models and pictures, so that an edit does not read them again.
     pub cache: Arc<Cache>,
 }
 
-/// A scene as it was given.
-pub enum GivenScene {
-    Builtin(Source),
-    File { name: String, bytes: Vec<u8> },
-}
-
 impl Given {
-    /// Reads it, with changes.
+    /// The text of a scene file of any kind, as TOML, and what is odd about the file.
+    pub fn new(name: &str, bytes: &[u8], files: InMemory) -> Result<(Self, Vec<Report>), Vec<Report>> {
+        let path = Path::new(name);
+        let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+        let (files, cache) = (Arc::new(files), Arc::new(Cache::default()));
+        let options =
+            LoadOptions { files: Arc::clone(&files) as _, cache: Some(Arc::clone(&cache)), ..LoadOptions::default() };
+        let Loaded { source, scene, kind, warnings, .. } = load_bytes(name, path, bytes, &folder, &options)?;
+        let source = match kind {
+            Kind::Toml => source,
+            Kind::Json | Kind::Driver | Kind::Nff => {
+                let name = path.with_extension("toml").to_string_lossy().into_owned();
+                Source::new(name, scene_file::to_text(&scene, Syntax::Toml)?)
+            }
+        };
+        Ok((Self { source, folder, files, cache }, warnings))
+    }
+
+    /// A built-in scene.
+    pub fn builtin(name: &str) -> Result<Self, Report> {
+        let source = builtin::find(name)?;
+        Ok(Self { source, folder: PathBuf::from("."), files: Arc::default(), cache: Arc::default() })
+    }
+
+    /// The same with another text.
+    pub fn with_text(&self, text: &str) -> Self {
+        Self { source: Source::new(Arc::clone(&self.source.name), text), ..self.clone() }
+    }
+
     fn read(&self, changes: &Changes) -> Result<(Recipe, Loaded), Vec<Report>> {
         let options = LoadOptions {
             files: Arc::clone(&self.files) as _,
-            set: changes.set.clone(),
             integrator: changes.integrator,
             cache: Some(Arc::clone(&self.cache)),
             ..LoadOptions::default()
         };
-        let loaded = match &self.scene {
-            GivenScene::Builtin(source) => load_text(source.clone(), Kind::Toml, Path::new("."), &options),
-            GivenScene::File { name, bytes } => {
-                let path = Path::new(name);
-                load_bytes(name, path, bytes, path.parent().unwrap_or(Path::new("")), &options)
-            }
-        }?;
+        let loaded = load_text(self.source.clone(), Kind::Toml, &self.folder, &options)?;
         Ok((Recipe::of(&loaded, &options, changes), loaded))
-    }
-
-    /// The scene with these edits alone, without what is asked of a picture.
-    pub fn edited(&self, edits: &[String]) -> Result<Arc<Scene>, Vec<Report>> {
-        let changes = Changes { set: edits.to_vec(), ..Changes::default() };
-        self.read(&changes).map(|(_, loaded)| loaded.scene)
     }
 }
 
@@ -63,13 +77,14 @@ impl Ready {
     /// Reads and compiles a scene. `before` is nearly the same one, which may share its tree.
     pub fn new(given: &Given, changes: &Changes, before: Option<&CompiledScene>) -> Result<Self, Vec<Report>> {
         let (mut recipe, mut loaded) = given.read(changes)?;
-        given.cache.keep_only(&loaded.models);
         let bounds = recipe.apply(loaded.scene_mut());
         recipe.resolve(&loaded.scene);
         let compiled = match before {
             Some(before) => loaded.compile_after(before),
             None => loaded.compile(&recipe.name, Quality::default(), 1),
         }?;
+        // Not before: what is refused must not cost the models of the scene that stays.
+        given.cache.keep_only(&loaded.models);
         let widened = bounds.map(|[left, right, bottom, top]| {
             let [width, height] = loaded.scene.render.size;
             let message = format!(

@@ -2,10 +2,10 @@
 
 use crate::findings::{json, thrown};
 use crate::picture::{Asked, Changed, Picture};
-use crate::ready::{Given, GivenScene, Ready};
-use js_sys::{Array, Uint8Array, try_iter};
+use crate::ready::{Given, Ready};
+use js_sys::{Array, Float64Array, Object, Reflect, Uint8Array, Uint32Array, try_iter};
 use serde_json::json;
-use snell::explain::{Sightings, ViewScene, black_picture, explain, find};
+use snell::explain::{Sightings, ViewGeometry, ViewScene, black_picture, explain, find};
 use snell::film::{Crop, Film};
 use snell::render::{Options, Progress};
 use snell::world::CompiledScene;
@@ -15,7 +15,7 @@ use snell_formats::recipe::Changes;
 use snell_formats::report::known_names;
 use snell_formats::scene_file::{self, Syntax};
 use snell_formats::{Report, builtin, memory};
-use std::sync::Arc;
+use std::hash::{DefaultHasher, Hash, Hasher};
 use wasm_bindgen::prelude::*;
 use wasm_bindgen::{Clamped, JsCast};
 
@@ -23,11 +23,12 @@ use wasm_bindgen::{Clamped, JsCast};
 #[wasm_bindgen]
 pub struct Session {
     given: Given,
-    edits: Vec<String>,
-    /// What `ready` was made with: the edits, and what was asked of the picture.
+    /// What was asked of the picture; `ready` was made with it.
     changes: Changes,
     ready: Ready,
     picture: Option<Picture>,
+    /// Of the meshes in the view that was handed over last.
+    geometry: Vec<ViewGeometry>,
 }
 
 /// What a function for JavaScript returns.
@@ -40,7 +41,7 @@ fn or_throw<T, E: Into<Vec<Report>>>(result: Result<T, E>) -> Answer<T> {
 
 #[wasm_bindgen]
 impl Session {
-    /// Reads a scene from the bytes of its file. `files` are the models and pictures that it names, and more if need be: a `Map`, or
+    /// Reads a scene from the bytes of its file, of any kind; from then on it is a text in TOML. `files` are the models and pictures that it names, and more if need be: a `Map`, or
     /// a list of pairs, of a name and bytes. Names may have folders; those in a scene are relative to the folder of `name`.
     pub fn load(
         name: String,
@@ -48,12 +49,19 @@ impl Session {
         #[wasm_bindgen(unchecked_optional_param_type = "Iterable<[string, Uint8Array]>")] files: JsValue,
     ) -> Answer<Self> {
         let bytes = or_throw(copy(&name, text, MAX_SCENE_BYTES))?;
-        Self::new(GivenScene::File { name, bytes }, read_files(&files)?)
+        let (given, odd) = or_throw(Given::new(&name, &bytes, read_files(&files)?))?;
+        let mut session = Self::new(given)?;
+        // What the file had, and its text in TOML has not.
+        let warnings = &mut session.ready.warnings;
+        let is_new = |report: &Report| warnings.iter().all(|warning| warning.message != report.message);
+        let lost: Vec<Report> = odd.into_iter().filter(is_new).collect();
+        warnings.splice(0..0, lost);
+        Ok(session)
     }
 
     /// A built-in scene.
     pub fn builtin(name: &str) -> Answer<Self> {
-        Self::new(GivenScene::Builtin(or_throw(builtin::find(name))?), InMemory::default())
+        Self::new(or_throw(Given::builtin(name))?)
     }
 
     /// The built-in scenes: a list of `name` and `text`, in JSON.
@@ -62,23 +70,62 @@ impl Session {
         scenes.collect::<serde_json::Value>().to_string()
     }
 
-    /// Changes one value of the scene, as `--set key=value` does. What was rendered is gone; what is refused leaves all as it was.
-    pub fn edit(&mut self, key: &str, value: &str) -> Answer<()> {
-        let change = format!("{key}={value}");
+    /// The scene as text, in TOML.
+    #[wasm_bindgen(getter)]
+    pub fn text(&self) -> String {
+        self.given.source.text.to_string()
+    }
+
+    /// Changes values in the text of the scene; comments and layout stay. `changes` are a list in JSON of keys with their values, like
+    /// `[["sphere.glass.radius", "8"], ["material.glass.eta", null]]`: as for `--set`, and `null` takes a key, or an element of a
+    /// list, away. A list with a whole table gets one more element. All of them or none: what is refused leaves all as it was. What was
+    /// rendered is gone.
+    pub fn edit(&mut self, changes: &str) -> Answer<()> {
+        let changes: Vec<(String, Option<String>)> = or_throw(serde_json::from_str(changes).map_err(|e| {
+            let help = r#"like [["material.glass.eta", "2.4"]]"#;
+            Report::error(format!("these are no changes of a scene: {e}")).help(help)
+        }))?;
+        let is_of_render = |key: &str| scene_file::keys(&format!("{key}=")).first().is_some_and(|key| key == "render");
         // What was asked of the picture before must not hide a setting of the scene.
-        let is_setting = scene_file::keys(&change).first().is_some_and(|table| table == "render");
-        let asked = if is_setting { Changes::default() } else { self.changes.clone() };
-        let edits = with_edit(&self.edits, change);
-        let changes = Changes { set: edits.clone(), ..asked };
-        let ready = self.prepared(&changes)?;
-        self.take(changes, ready);
-        (self.edits, self.picture) = (edits, None);
+        let hides = changes.iter().any(|(key, _)| is_of_render(key));
+        let asked = if hides { Changes::default() } else { self.changes.clone() };
+        let text = scene_file::rewrite(&self.given.source, &changes).map_err(Vec::from);
+        let read = text.and_then(|text| self.read(&text, &asked));
+        let named =
+            |reports: Vec<Report>| reports.into_iter().map(|report| about(report, &changes)).collect::<Vec<_>>();
+        let (given, ready) = or_throw(read.map_err(named))?;
+        self.take_text(given, asked, ready);
         Ok(())
+    }
+
+    /// Takes another text for the scene. What is refused leaves all as it was; the findings have their places in the text.
+    pub fn revise(&mut self, text: &str) -> Answer<()> {
+        let (given, ready) = or_throw(self.read(text, &Changes::default()))?;
+        self.take_text(given, Changes::default(), ready);
+        Ok(())
+    }
+
+    /// The scene in JSON, as its text has it; vertices and faces of meshes are left out, and long lists of
+    /// instances.
+    pub fn scene(&self) -> Answer<String> {
+        let mut scene = or_throw(scene_file::parse(&self.given.source, Syntax::Toml))?;
+        let short = |instances: &mut Vec<_>| {
+            instances.truncate(if instances.len() > MOST_INSTANCES { 0 } else { MOST_INSTANCES })
+        };
+        scene.spheres.iter_mut().for_each(|sphere| short(&mut sphere.instances));
+        for mesh in &mut scene.meshes {
+            (mesh.vertices, mesh.faces) = (Vec::new(), Vec::new());
+            short(&mut mesh.instances);
+        }
+        // Numbers of a scene that was validated always have a form.
+        Ok(serde_json::to_string(&scene).unwrap_or_default())
     }
 
     /// Begins a picture. `options` are an object in JSON: `size`, `spp`, `depth`, `integrator`, `shadows`, as of a scene's `render`;
     /// `coarsest`, with which the first sample of every so many-th pixel comes first; and `crop`, a part of the picture by `x`, `y`,
-    /// `width`, `height`. What is left out is as the scene has it. What is refused leaves the scene as it was.
+    /// `width`, `height`. With `share`, a number from 0 and the number of shares, only every so many-th piece of 64 x 64 pixels is rendered,
+    /// and `rgba` and `values` tell of what lies within one piece. What is left out is as the scene has it. What is refused leaves the
+    /// scene as it was.
     pub fn begin(&mut self, options: Option<String>) -> Answer<()> {
         self.begin_with(options, Picture::begin)
     }
@@ -96,10 +143,22 @@ impl Session {
         changed.iter().flat_map(Changed::numbers).collect()
     }
 
-    /// Puts a part, which another instance has rendered to its end, into a gathered picture.
-    pub fn put(&mut self, x: u32, y: u32, width: u32, height: u32, values: &[f64]) -> Answer<()> {
-        let Some(picture) = &mut self.picture else { return Err(thrown(&[nothing_begun()])) };
-        or_throw(picture.put(Crop { x, y, width, height }, values))
+    /// Puts a part, which another instance has rendered, into a gathered picture. `finished`: with all of its samples.
+    pub fn put(&mut self, x: u32, y: u32, width: u32, height: u32, values: &[f64], finished: bool) -> Answer<()> {
+        let picture = self.picture.as_mut().ok_or_else(|| thrown(&[nothing_begun()]))?;
+        or_throw(picture.put(Crop { x, y, width, height }, values, finished))
+    }
+
+    /// What was traced for the picture so far, in JSON, for `put_statistics` of the instance that gathers it.
+    pub fn statistics(&self) -> Answer<String> {
+        let picture = self.picture.as_ref().ok_or_else(|| thrown(&[nothing_begun()]))?;
+        Ok(serde_json::to_string(&picture.statistics()).unwrap_or_default())
+    }
+
+    /// Adds what another instance has traced for a gathered picture, once it is finished there: `validate` knows of it then.
+    pub fn put_statistics(&mut self, statistics: &str) -> Answer<()> {
+        let picture = self.picture.as_mut().ok_or_else(|| thrown(&[nothing_begun()]))?;
+        or_throw(picture.put_statistics(statistics))
     }
 
     /// Width and height of the whole picture.
@@ -124,7 +183,8 @@ impl Session {
     /// SHA-256 of the numbers of the finished picture, as `snell render` has it.
     #[wasm_bindgen(getter)]
     pub fn film_sha256(&self) -> Option<String> {
-        self.picture.as_ref().filter(|picture| picture.is_finished()).map(|picture| sha256(picture.film().bytes()))
+        let picture = self.picture.as_ref().filter(|picture| picture.is_finished())?;
+        picture.film().map(|film| sha256(film.bytes()))
     }
 
     /// A part of the picture as a canvas shows it: red, green, blue and 255 of each pixel, by the curve of the scene.
@@ -154,9 +214,28 @@ impl Session {
         Ok(serde_json::to_string(&explanation).unwrap_or_default())
     }
 
-    /// The scene as the viewer draws it, in JSON.
-    pub fn view(&self) -> String {
-        serde_json::to_string(&ViewScene::of(&self.ready.compiled)).unwrap_or_default()
+    /// The scene as the viewer draws it, in JSON; instead of vertices and faces, meshes have `geometry`, a text that stays the same as long
+    /// as these do. `view_mesh` has them.
+    pub fn view(&mut self) -> String {
+        let mut view = ViewScene::of(&self.ready.compiled);
+        self.geometry = view.take_geometry();
+        let mut view = serde_json::to_value(&view).unwrap_or_default();
+        let meshes = view["meshes"].as_array_mut().into_iter().flatten();
+        for (mesh, geometry) in meshes.zip(&self.geometry) {
+            mesh["geometry"] = fingerprint(geometry).into();
+        }
+        view.to_string()
+    }
+
+    /// Vertices and faces of a mesh in the last `view`, by its number there from 0.
+    #[wasm_bindgen(unchecked_return_type = "{ vertices: Float64Array; faces: Uint32Array }")]
+    pub fn view_mesh(&self, index: usize) -> Answer<Object> {
+        let no_mesh = || thrown(&[Report::error(format!("the view has no mesh {index}"))]);
+        let ViewGeometry { vertices, faces } = self.geometry.get(index).ok_or_else(no_mesh)?;
+        let mesh = Object::new();
+        Reflect::set(&mesh, &"vertices".into(), &Float64Array::from(vertices.as_slice()))?;
+        Reflect::set(&mesh, &"faces".into(), &Uint32Array::from(faces.as_slice()))?;
+        Ok(mesh)
     }
 
     /// Where an object is seen. It looks at every pixel of the whole picture, which takes much longer than rendering.
@@ -180,16 +259,12 @@ impl Session {
     pub fn validate(&self) -> String {
         let Ready { compiled, warnings, .. } = &self.ready;
         let finished = self.picture.iter().filter(|picture| picture.is_finished());
-        let of_picture = finished
-            .flat_map(|picture| picture.warnings(compiled).into_iter().chain(black_picture(compiled, picture.film())));
+        let of_picture = finished.flat_map(|picture| {
+            let black = picture.film().and_then(|film| black_picture(compiled, film));
+            picture.warnings(compiled).into_iter().chain(black)
+        });
         let of_picture = of_picture.map(|warning| Report::warning(warning.code, warning.message));
         json(&warnings.iter().cloned().chain(of_picture).collect::<Vec<_>>())
-    }
-
-    /// The scene with its edits as TOML, without what was asked of a picture.
-    pub fn save(&self) -> Answer<String> {
-        let scene = or_throw(self.given.edited(&self.edits))?;
-        or_throw(scene_file::to_text(&scene, Syntax::Toml))
     }
 
     /// The picture so far as a PNG of 8 bit, with its recipe.
@@ -207,24 +282,24 @@ impl Session {
 const BYTES_OF_SIGHTINGS: u64 = 400;
 
 impl Session {
-    fn new(scene: GivenScene, files: InMemory) -> Answer<Self> {
-        let given = Given { scene, files: Arc::new(files), cache: Arc::default() };
+    fn new(given: Given) -> Answer<Self> {
         let changes = Changes::default();
         let ready = or_throw(Ready::new(&given, &changes, None))?;
-        Ok(Self { given, edits: Vec::new(), changes, ready, picture: None })
+        Ok(Self { given, changes, ready, picture: None, geometry: Vec::new() })
     }
 
-    /// The scene with these changes, if it is another one than there is.
-    fn prepared(&self, changes: &Changes) -> Answer<Option<Ready>> {
-        let make = || Ready::new(&self.given, changes, Some(&self.ready.compiled));
-        or_throw((*changes != self.changes).then(make).transpose())
-    }
-
-    fn take(&mut self, changes: Changes, ready: Option<Ready>) {
-        self.changes = changes;
-        if let Some(ready) = ready {
-            self.ready = ready;
+    /// Reads and compiles the scene with another text.
+    fn read(&self, text: &str, asked: &Changes) -> Result<(Given, Ready), Vec<Report>> {
+        if text.len() as u64 > MAX_SCENE_BYTES {
+            return Err(Report::error(format!("a scene of more than {MAX_SCENE_BYTES} bytes is not read")).into());
         }
+        let given = self.given.with_text(text);
+        let ready = Ready::new(&given, asked, Some(&self.ready.compiled))?;
+        Ok((given, ready))
+    }
+
+    fn take_text(&mut self, given: Given, changes: Changes, ready: Ready) {
+        (self.given, self.changes, self.ready, self.picture) = (given, changes, ready, None);
     }
 
     fn begin_with(
@@ -233,22 +308,28 @@ impl Session {
         begin: impl Fn(&CompiledScene, &Asked) -> Result<Picture, Report>,
     ) -> Answer<()> {
         let asked = or_throw(Asked::parse(options.as_deref()))?;
-        let changes = asked.changes(&self.edits);
-        let ready = self.prepared(&changes)?;
+        let changes = asked.changes();
+        let make = || Ready::new(&self.given, &changes, Some(&self.ready.compiled));
+        let ready = or_throw((changes != self.changes).then(make).transpose())?;
         // The memory of the picture before is free for the next one.
         self.picture = None;
         let compiled = &ready.as_ref().unwrap_or(&self.ready).compiled;
         self.picture = Some(or_throw(begin(compiled, &asked))?);
-        self.take(changes, ready);
+        self.changes = changes;
+        if let Some(ready) = ready {
+            self.ready = ready;
+        }
         Ok(())
     }
 
     fn film(&self) -> Answer<&Film> {
-        self.picture.as_ref().map(Picture::film).ok_or_else(|| thrown(&[nothing_begun()]))
+        let picture = self.picture.as_ref().ok_or_else(|| thrown(&[nothing_begun()]))?;
+        picture.film().ok_or_else(|| thrown(&[Report::error("this is only a share of a picture")]))
     }
 
     fn part(&self, part: Crop) -> Answer<Film> {
-        self.film()?.part(part).ok_or_else(|| {
+        let picture = self.picture.as_ref().ok_or_else(|| thrown(&[nothing_begun()]))?;
+        picture.part(part).ok_or_else(|| {
             let Crop { x, y, width, height } = part;
             thrown(&[Report::error(format!("{width} x {height} pixels at {x},{y} are no part of the picture"))])
         })
@@ -264,25 +345,31 @@ impl Session {
     }
 }
 
-/// Edits with one more. A slider changes one value again and again: only its last value counts, unless what was edited since may
-/// build upon the one before. Tables and names decide what other keys mean.
-fn with_edit(edits: &[String], change: String) -> Vec<String> {
-    let keys = scene_file::keys(&change);
-    let is_value =
-        |change: &str, keys: &[String]| !change.contains('{') && keys.last().is_some_and(|key| key != "name");
-    let mut edits = edits.to_vec();
-    if let Some(at) = edits.iter().rposition(|edit| scene_file::keys(edit) == keys)
-        && is_value(&change, &keys)
-        && is_value(&edits[at], &keys)
-        && edits[at + 1..]
-            .iter()
-            .map(|edit| scene_file::keys(edit))
-            .all(|other| !other.starts_with(&keys) && !keys.starts_with(&other))
-    {
-        edits.remove(at);
+/// A report of a text that was made by changes, which nobody has seen: it names them instead of a place.
+fn about(report: Report, changes: &[(String, Option<String>)]) -> Report {
+    let change = |(key, value): &(String, Option<String>)| match value {
+        Some(value) => format!("`{key} = {}`", value.chars().take(MOST_SHOWN).collect::<String>()),
+        None => format!("`{key}` taken away"),
+    };
+    let mut names: Vec<String> = changes.iter().take(3).map(change).collect();
+    if changes.len() > names.len() {
+        names.push(format!("{} more", changes.len() - names.len()));
     }
-    edits.push(change);
-    edits
+    Report { message: format!("{}: {}", names.join(", "), report.message), place: None, ..report }
+}
+
+/// Longer lists are for programs, not for people to edit.
+const MOST_INSTANCES: usize = 100;
+
+/// Characters of a value in a message.
+const MOST_SHOWN: usize = 60;
+
+/// The same for the same numbers.
+fn fingerprint(ViewGeometry { vertices, faces }: &ViewGeometry) -> String {
+    let mut hasher = DefaultHasher::new();
+    vertices.iter().for_each(|number| number.to_bits().hash(&mut hasher));
+    faces.hash(&mut hasher);
+    format!("{:016x}", hasher.finish())
 }
 
 fn nothing_begun() -> Report {

@@ -303,13 +303,13 @@ fn find<'a>(place: Place<'a>, path: &[&str], walked: &str, steps: &mut Vec<Step>
     }
 }
 
-fn unknown(walked: &str, step: &str, known: &[String]) -> Report {
+pub(super) fn unknown(walked: &str, step: &str, known: &[String]) -> Report {
     let names = known.iter().map(String::as_str);
     let help = if known.is_empty() { "there are none".to_owned() } else { known_names(step, names) };
     Report::error(format!("there is no `{walked}` in this scene")).help(help)
 }
 
 /// A TOML value; what is none is taken as a text.
-fn parse_value(text: &str) -> Value {
+pub(super) fn parse_value(text: &str) -> Value {
     text.trim().parse().unwrap_or_else(|_| Value::from(text.trim()))
 }

@@ -3,6 +3,7 @@
 mod edit;
 mod layout;
 mod locate;
+mod rewrite;
 #[cfg(feature = "disk")]
 mod save;
 mod write;
@@ -10,6 +11,7 @@ mod write;
 pub(crate) use edit::split;
 pub use edit::{keys, set};
 pub use locate::steps_at;
+pub use rewrite::rewrite;
 #[cfg(feature = "disk")]
 pub use save::save;
 pub use write::to_text;

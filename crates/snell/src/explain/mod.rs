@@ -28,4 +28,4 @@ pub use document::{
 pub use path::{How, Leg, Path, PathError, SKY};
 pub use sentence::{color_name, percent};
 pub use survey::{Layers, Sightings, by_path, find, layers, only};
-pub use view::ViewScene;
+pub use view::{ViewGeometry, ViewScene};

@@ -70,7 +70,25 @@ struct ViewLight {
     color: [f64; 3],
 }
 
+/// What a mesh is made of, where it stands.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ViewGeometry {
+    /// x, y, z of one vertex after the other.
+    pub vertices: Vec<f64>,
+    /// Three vertices for each face.
+    pub faces: Vec<u32>,
+}
+
 impl ViewScene {
+    /// Takes vertices and faces out of the meshes, which are left without, for whoever hands them over in another way.
+    pub fn take_geometry(&mut self) -> Vec<ViewGeometry> {
+        let take = |mesh: &mut ViewMesh| ViewGeometry {
+            vertices: std::mem::take(&mut mesh.vertices),
+            faces: std::mem::take(&mut mesh.faces),
+        };
+        self.meshes.iter_mut().map(take).collect()
+    }
+
     /// Of a scene and its world.
     pub fn of(compiled: &CompiledScene) -> Self {
         let world = compiled.world();

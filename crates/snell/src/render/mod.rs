@@ -9,7 +9,7 @@ mod warnings;
 pub use crate::lanes::LaneWidth;
 pub use crate::settings::Settings;
 pub use partial::{Grid, JoinError, PartialFilm, Piece};
-pub use renderer::Renderer;
+pub use renderer::{Fineness, Renderer};
 pub use warnings::warnings;
 
 use crate::film::{Crop, Film, FilmTooLarge};

@@ -11,6 +11,7 @@ use crate::settings::Settings;
 use crate::threads;
 use crate::trace::{Block, Integrator, Statistics, Tile, TracedTile, Tracer, mean};
 use crate::world::World;
+use std::cmp::Reverse;
 use std::collections::VecDeque;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -71,6 +72,11 @@ impl<'a> Renderer<'a> {
         self.schedule.is_finished()
     }
 
+    /// How fine the pixels are that come next; `None` when everything is rendered.
+    pub fn fineness(&self) -> Option<Fineness> {
+        self.schedule.passes.front().map(Pass::fineness)
+    }
+
     /// The picture so far: pixels that are not finished are black, or like a neighbour of a coarser pass.
     pub fn film(&self) -> &Film {
         &self.film
@@ -91,6 +97,15 @@ impl<'a> Renderer<'a> {
         let statistics = self.schedule.statistics();
         (self.film, statistics)
     }
+}
+
+/// Of several renders, each of a part of a picture, those with less are to go on first: then the whole picture gets finer together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Fineness {
+    samples: u32,
+    /// How far pixels are apart, and where those of the pass lie between those before.
+    step: Reverse<u32>,
+    between: [u32; 2],
 }
 
 /// What is still to be rendered into a film; each step is told the world and the settings again, which must be the same.
@@ -129,6 +144,10 @@ struct Pass {
 }
 
 impl Pass {
+    fn fineness(&self) -> Fineness {
+        Fineness { samples: self.samples.start, step: Reverse(self.step), between: [self.y, self.x] }
+    }
+
     /// How many pixels in a row, and how many rows.
     fn pixels(&self, crop: &Crop) -> [u32; 2] {
         let count = |start: u32, length: u32| length.saturating_sub(start).div_ceil(self.step);
