@@ -58,10 +58,7 @@ const MOST_HEADERS: usize = 64;
 const PATIENCE: Duration = Duration::from_secs(30);
 
 /// Reads a request, and answers it.
-pub fn talk(
-    mut stream: TcpStream,
-    answer: impl FnOnce(&Request) -> std::result::Result<Answer, Status>,
-) -> Result<()> {
+pub fn talk(mut stream: TcpStream, answer: impl FnOnce(&Request) -> std::result::Result<Answer, Status>) -> Result<()> {
     stream.set_read_timeout(Some(PATIENCE))?;
     stream.set_write_timeout(Some(PATIENCE))?;
     stream.set_nodelay(true)?;
@@ -134,7 +131,8 @@ fn parse(bytes: &[u8]) -> std::result::Result<Option<Request>, Status> {
     let mut headers = [httparse::EMPTY_HEADER; MOST_HEADERS];
     let mut request = httparse::Request::new(&mut headers);
     match request.parse(bytes) {
-        Ok(httparse::Status::Complete(_)) => {}
+        Ok(httparse::Status::Complete(length)) if length <= MOST_HEADER_BYTES => {}
+        Ok(httparse::Status::Complete(_)) => return Err(Status::HeadersTooLarge),
         Ok(httparse::Status::Partial) => return Ok(None),
         Err(httparse::Error::TooManyHeaders) => return Err(Status::HeadersTooLarge),
         Err(_) => return Err(Status::BadRequest),

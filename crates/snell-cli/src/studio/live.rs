@@ -61,6 +61,8 @@ impl Live {
     pub fn follow(&self, mut last: Option<String>) -> Answer {
         let latest = Arc::clone(&self.0);
         let write = move |out: &mut dyn Write| {
+            // A page that has the latest event is to know that it is connected.
+            out.flush()?;
             loop {
                 match latest.after(last.as_deref()) {
                     Some(event) => {

@@ -54,9 +54,7 @@ impl Pages {
                 let mut file = File::open(file).ok()?;
                 let length = file.metadata().ok()?.len();
                 // A file that grows meanwhile must not be longer than was said.
-                let write = move |out: &mut dyn Write| {
-                    std::io::copy(&mut (&mut file).take(length), out).map(drop)
-                };
+                let write = move |out: &mut dyn Write| std::io::copy(&mut (&mut file).take(length), out).map(drop);
                 Some(Answer { kind, is_gzip: false, length: Some(length), write: Box::new(write) })
             }
         }
@@ -129,8 +127,23 @@ mod tests {
         assert_eq!(name_of("/").as_deref(), Some("index.html"));
         assert_eq!(name_of("/assets/a%20b.js").as_deref(), Some("assets/a b.js"));
         for odd in [
-            "", "a", "//", "/a//b", "/..", "/a/../b", "/%2e%2e/b", "/..%2fb", "/a\\b", "/%5c..%5cb", "/c:/b", "/.git/x", "/%",
-            "/%g0", "/%ff", "/a%00", "http://x/a",
+            "",
+            "a",
+            "//",
+            "/a//b",
+            "/..",
+            "/a/../b",
+            "/%2e%2e/b",
+            "/..%2fb",
+            "/a\\b",
+            "/%5c..%5cb",
+            "/c:/b",
+            "/.git/x",
+            "/%",
+            "/%g0",
+            "/%ff",
+            "/a%00",
+            "http://x/a",
         ] {
             assert_eq!(name_of(odd), None, "{odd}");
         }

@@ -44,11 +44,7 @@ impl State {
         let about = path.metadata().ok()?;
         let is_small = about.is_file() && about.len() <= SMALL;
         let bytes = if is_small { Disk.read(path, SMALL).ok() } else { None };
-        Some(Self {
-            modified: about.modified().ok(),
-            length: about.len(),
-            sha256: bytes.map(|bytes| sha256([bytes])),
-        })
+        Some(Self { modified: about.modified().ok(), length: about.len(), sha256: bytes.map(|bytes| sha256([bytes])) })
     }
 }
 
