@@ -4,7 +4,7 @@
 
 import { execFileSync } from 'node:child_process';
 import { createHash } from 'node:crypto';
-import { mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { argv, exit, stderr } from 'node:process';
 import { indexedPng } from './png.mjs';
@@ -42,40 +42,72 @@ function run(...args) {
 
 /** Renders, and returns what the command says at the end. */
 function render(name, output, ...args) {
-  const script = 'exec "$@" 2>&1 >/dev/null';
-  const line = ['-c', script, 'sh', command, 'render', name, ...args, '--progress', 'json', '-o', output];
+  // What it says comes on the stream that is not read here.
+  const line = ['-c', 'exec "$@" 2>&1', 'sh', command, 'render', name, ...args, '--progress', 'json', '-o', output];
   const said = execFileSync('sh', line, { encoding: 'utf8', maxBuffer: 1 << 26 });
   return JSON.parse(said.trim().split('\n').at(-1));
 }
 
-/** A PPM of 8 bit: its size and its colours. */
+/** A PPM as the command writes it, in words: its size and its colours. */
 function readPpm(path) {
-  const bytes = readFileSync(path);
-  let at = 0;
-  const words = Array.from({ length: 4 }, () => {
-    const start = at;
-    while (bytes[at] > 32) at += 1;
-    at += 1;
-    return bytes.toString('latin1', start, at - 1);
-  });
-  if (words[0] !== 'P6' || words[3] !== '255') throw new Error(`${path} is no binary PPM of 8 bit`);
-  return { width: Number(words[1]), height: Number(words[2]), colors: bytes.subarray(at) };
+  const [kind, width, height, most, ...numbers] = readFileSync(path, 'latin1').trim().split(/\s+/);
+  if (kind !== 'P3' || most !== '255') throw new Error(`${path} is no PPM in words, of 8 bit`);
+  return { width: Number(width), height: Number(height), colors: Uint8Array.from(numbers) };
 }
 
-/** Draws a small picture, and returns how long it took for each sample of each pixel. */
+/** Draws a small picture; returns the seconds that a sample of a pixel takes. */
 function thumbnail(name, file, [width, height], samples) {
-  const path = join(folder, `${file}.ppm`);
-  const size = [width, Math.round(height)];
-  const { seconds } = render(name, path, '--size', size.join('x'), '--spp', `${samples}`, '--stretch');
+  const path = join(folder, 'thumbnail.ppm');
+  const size = [width, height].map(Math.round);
+  const args = ['--size', size.join('x'), '--stretch', '--spp', `${samples}`];
+  const { seconds } = render(name, path, ...args);
   writeFileSync(join(folder, file), indexedPng(readPpm(path)));
   rmSync(path);
   return seconds / (size[0] * size[1] * samples);
 }
 
-function sceneOf(name) {
-  const scene = JSON.parse(run('convert', name, '-o', '-')).scene;
-  return scene;
+/** The hash of a scene as it is. */
+function filmOf(name) {
+  const path = join(folder, 'film.npy');
+  const { film_sha256 } = render(name, path);
+  rmSync(path);
+  return film_sha256;
+}
+
+/** What the text of a scene says of itself, and of its picture. */
+function read(name) {
+  const text = run('scenes', '--save', name, '-o', '-');
+  const description = /^(?:#.*\n)+/.exec(text)?.[0].replaceAll(/^# ?/gm, '').replaceAll('\n', ' ').trim() ?? '';
+  const render = /^\[render\]$([^[]*(?:\[[\d, ]+\][^[]*)*)/m.exec(text)?.[1] ?? '';
+  const size = /^size = \[(\d+), (\d+)\]/m.exec(render)?.slice(1).map(Number);
+  if (!size) throw new Error(`${name} does not say how large its picture is`);
+  return { name, description, size, spp: Number(/^spp = (\d+)/m.exec(render)?.[1] ?? 1) };
+}
+
+function made(name) {
+  const { description, size, spp } = read(name);
+  const file = `thumbnails/${name.replaceAll('/', '-')}.png`;
+  const [width, height] = size;
+  const scene = { name, description, size, spp, film_sha256: null, thumbnail: file };
+  // A coarse picture first: it tells how long the others take.
+  const perSample = thumbnail(name, file, [WIDTH / 4, (WIDTH / 4 / width) * height], 1);
+  const isLong = perSample * width * height * spp > LONG;
+  if (quick && isLong) return { ...scene, isCoarse: true };
+  thumbnail(name, file, [WIDTH, (WIDTH / width) * height], SAMPLES);
+  return { ...scene, film_sha256: filmOf(name) };
 }
 
 mkdirSync(join(folder, 'thumbnails'), { recursive: true });
-const scenes = [];
+const names = run('scenes').match(/^[a-z]+\/\S+/gm);
+const scenes = names.map((name, number) => {
+  const before = cache.scenes[name];
+  const isThere = before && existsSync(join(folder, before.thumbnail)) && (quick || !before.isCoarse);
+  if (!isThere) {
+    stderr.write(`scene ${number + 1} of ${names.length}: ${name}\n`);
+    cache.scenes[name] = made(name);
+    writeFileSync(known, JSON.stringify(cache));
+  }
+  const { isCoarse, ...scene } = cache.scenes[name];
+  return scene;
+});
+writeFileSync(join(folder, 'scenes.json'), `${JSON.stringify(scenes, undefined, 2)}\n`);
