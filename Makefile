@@ -9,9 +9,8 @@ help: ## This list
 demo: ## Build Snell, render the default scene, say where the picture is
 	@scripts/demo.sh
 
-studio: ## Build what a page in a browser loads, in target/studio
-	cargo build --locked --quiet --package snell-wasm-bundle --profile ci
-	@bash -c 'source scripts/lib.sh && bundle_studio'
+studio: ## Build Snell Studio and open it in a browser (SCENE=scene.toml shows that)
+	@scripts/studio.sh $(SCENE)
 
 test: ## Everything that CI runs
 	@scripts/test.sh

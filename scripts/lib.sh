@@ -89,6 +89,13 @@ need_viewer_packages() {
     (cd viewer && npm ci --silent --no-audit --no-fund) && cp viewer/package-lock.json viewer/node_modules/.fetched
 }
 
+# The same for the studio, which is built on the viewer.
+need_studio_packages() {
+    need_viewer_packages
+    cmp -s studio/package-lock.json studio/node_modules/.fetched && return
+    (cd studio && npm ci --silent --no-audit --no-fund) && cp studio/package-lock.json studio/node_modules/.fetched
+}
+
 # Node runs the WASM tests and builds the viewer; 20 is the oldest that its tools run on.
 need_node() {
     node --eval 'process.exit(parseInt(process.versions.node) < 20 ? 1 : 0)' 2>/dev/null ||
@@ -97,11 +104,19 @@ need_node() {
 
 # What runs in a browser, and what its bits are tested with; together, as cargo then builds the library once for both.
 build_wasm() {
-    cargo build --locked --quiet --package snell-wasm --package snell-wasm-test --target wasm32-unknown-unknown --profile ci
+    cargo build --locked --quiet --package snell-wasm --package snell-wasm-test --target wasm32-unknown-unknown --profile wasm
 }
 
 # What a page loads of Rust, in target/studio. Needs snell-wasm-bundle, which the workspace builds, or cargo on its own.
 bundle_studio() {
     build_wasm
-    target/ci/snell-wasm-bundle target/wasm32-unknown-unknown/ci/snell_wasm.wasm target/studio
+    target/ci/snell-wasm-bundle target/wasm32-unknown-unknown/wasm/snell_wasm.wasm target/studio
+}
+
+# The studio as any host serves it, in target/studio-dist. Needs snell besides; with --quick, scenes that take long have no hash.
+build_studio() {
+    need_studio_packages
+    bundle_studio
+    node studio/scripts/scenes.mjs target/ci/snell target/studio "$@"
+    (cd studio && npm run build --silent)
 }

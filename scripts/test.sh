@@ -49,14 +49,14 @@ kernels_alone() {
 same_bits_in_wasm() {
     build_wasm
     target/ci/snell-test-scenes >target/same-bits-native.txt
-    node tests/wasm/run.mjs target/wasm32-unknown-unknown/ci/snell_wasm_test.wasm >target/same-bits-wasm.txt
+    node tests/wasm/run.mjs target/wasm32-unknown-unknown/wasm/snell_wasm_test.wasm >target/same-bits-wasm.txt
     diff target/same-bits-native.txt target/same-bits-wasm.txt
     printf '%d films and statistics, the same bits\n' "$(wc -l <target/same-bits-wasm.txt)"
 }
 # As a page loads it; some lints depend on the size of a pointer.
 browser_module() {
     bundle_studio
-    cargo clippy --locked --quiet --package snell-wasm --target wasm32-unknown-unknown --profile ci -- -D warnings
+    cargo clippy --locked --quiet --package snell-wasm --target wasm32-unknown-unknown --profile wasm -- -D warnings
     SNELL=$PWD/target/ci/snell node --test tests/studio/
 }
 

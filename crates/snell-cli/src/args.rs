@@ -41,6 +41,7 @@ pub enum Command {
     Explain(Box<ExplainArgs>),
     Info(InfoArgs),
     Scenes(ScenesArgs),
+    Studio(StudioArgs),
     Convert(ConvertArgs),
     Diff(DiffArgs),
     Merge(MergeArgs),
@@ -323,6 +324,27 @@ pub struct ScenesArgs {
     /// Overwrite the file if there is one
     #[arg(long)]
     pub force: bool,
+}
+
+/// Open Snell Studio in the browser: the ray tracer, to look at, to change, and to ask
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  snell studio
+  snell studio scene.toml      this scene, and again whenever it or one of its models is saved
+  snell studio gallery/prism
+
+It is served to this machine alone, until ^C. The page works without it once it is loaded, and nothing leaves the machine.")]
+pub struct StudioArgs {
+    /// Scene file, driver file, or built-in name
+    #[arg(value_parser = SceneName, hide_possible_values = true)]
+    pub scene: Option<String>,
+    /// The port to listen at; 0 takes a free one. What a page keeps belongs to its port
+    #[arg(long, value_name = "N", default_value_t = 1621)]
+    pub port: u16,
+    /// Open no browser, only print the address
+    #[arg(long)]
+    pub no_open: bool,
 }
 
 /// Turn a driver or NFF file into a scene file (or TOML into JSON and back)

@@ -1,7 +1,7 @@
 //! The `snell` command: a thin face on the library. It holds no physics.
 //!
 //! ```text
-//!  arguments ── args ─▶ a verb: render, explain, diff, convert, check, info, scenes ── output ─▶ a file, or standard output
+//!  arguments ── args ─▶ a verb: render, explain, diff, convert, check, studio, … ── output ─▶ a file, or standard output
 //!                           ▲      │                                              │
 //!  a scene, a picture ── input     ├─▶ progress: how far it is, on stderr         └─▶ say: reports on stderr, exit codes
 //!  that remembers one, ── recipe   └─▶ signals: ^C and SIGTERM, which leave a picture that is whole
@@ -36,6 +36,7 @@ mod say;
 mod scenes;
 mod signals;
 mod solid_text;
+mod studio;
 
 use args::{Arguments, Command};
 use clap::error::ErrorKind;
@@ -87,6 +88,7 @@ fn run(command: Command) -> Outcome {
         Command::Explain(args) => explain::run(&args),
         Command::Info(args) => info::run(&args),
         Command::Scenes(args) => scenes::run(&args),
+        Command::Studio(args) => studio::run(&args),
         Command::Convert(args) => convert::run(&args),
         Command::Diff(args) => diff::run(&args),
         Command::Merge(args) => merge::run(&args),

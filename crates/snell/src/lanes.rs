@@ -4,8 +4,8 @@ pub use snell_kernels::lanes::*;
 
 use snell_kernels::instructions_of_this_machine;
 
-/// How many numbers a kernel computes together. The picture does not depend on it, and every width runs on every machine:
-/// as plain arrays where the instructions are missing.
+/// How many numbers a kernel computes together. The picture does not depend on it, and every width may be asked for
+/// on every machine: where the instructions are missing, they are plain arrays, or in WASM single numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LaneWidth {
     /// 1.

@@ -1,7 +1,7 @@
 //! Makes what a page loads of the module that cargo has built: JavaScript that calls it, its types, and the module without names.
 //!
 //! ```text
-//! snell-wasm-bundle target/wasm32-unknown-unknown/ci/snell_wasm.wasm target/studio
+//! snell-wasm-bundle target/wasm32-unknown-unknown/wasm/snell_wasm.wasm target/studio
 //! ```
 //!
 //! It is `wasm-bindgen` as a library, in the version that `Cargo.lock` has for the module too, so that the two always fit.

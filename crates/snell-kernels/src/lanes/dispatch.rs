@@ -2,7 +2,7 @@
 
 #![allow(unsafe_code, reason = "a function that says what it asks for")]
 
-use super::{ArrayLanes, Kernel, Lanes};
+use super::{Kernel, Lanes};
 
 /// Instructions that not every machine has. Whoever calls [`dispatch`] asks the machine: that takes the standard library.
 #[derive(Clone, Copy, Debug, Default)]
@@ -76,9 +76,10 @@ type Two = super::x86::Sse2;
     target_arch = "aarch64",
     all(target_arch = "wasm32", target_feature = "simd128")
 )))]
-type Two = ArrayLanes<2>;
+type Two = super::ArrayLanes<2>;
 
-/// Does some work with so many lanes, 1, 2, 4 or 8, and with the best of these instructions; another number counts as 1.
+/// Does some work with so many lanes, 1, 2, 4 or 8, and with the best of these instructions; another number counts as 1. So
+/// do 4 and 8 in WASM: they would be half of what is downloaded, and slower than 2.
 pub fn dispatch<K: Kernel>(lanes: usize, instructions: Instructions, kernel: K) -> K::Output {
     #[cfg(not(target_arch = "x86_64"))]
     let Instructions { .. } = instructions;
@@ -88,8 +89,10 @@ pub fn dispatch<K: Kernel>(lanes: usize, instructions: Instructions, kernel: K) 
         4 if instructions.avx2 => super::x86::Avx2::call(kernel),
         #[cfg(target_arch = "x86_64")]
         8 if instructions.avx512 => super::x86::Avx512::call(kernel),
-        4 => ArrayLanes::<4>::call(kernel),
-        8 => ArrayLanes::<8>::call(kernel),
+        #[cfg(not(target_family = "wasm"))]
+        4 => super::ArrayLanes::<4>::call(kernel),
+        #[cfg(not(target_family = "wasm"))]
+        8 => super::ArrayLanes::<8>::call(kernel),
         _ => f64::call(kernel),
     }
 }
