@@ -93,7 +93,7 @@ export function App() {
               tabs={[
                 { id: 'why', title: 'Why?', content: <AskPanel store={store} space={space} /> },
                 { id: 'scene', title: 'Scene', content: <Properties store={store} /> },
-                { id: 'source', title: 'Source', content: tab.value === 'source' ? <SourcePanel store={store} glasses={[]} /> : null },
+                { id: 'source', title: 'Source', content: tab.value === 'source' ? <SourcePanel store={store} /> : null },
               ]}
             />
           </aside>

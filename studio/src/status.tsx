@@ -86,7 +86,7 @@ function Bits({ store, sha256 }: { store: Store; sha256: string }) {
     <span class="hash" title={`SHA-256 of the numbers of this picture: ${sha256}`}>
       {hash}{' '}
       <button type="button" class="plain" onClick={() => void check()}>
-        Check
+        Compare with the command line
       </button>{' '}
       <span role="status">{told.value}</span>
     </span>

@@ -7,6 +7,7 @@ use js_sys::{Array, Float64Array, Object, Reflect, Uint8Array, Uint32Array, try_
 use serde_json::json;
 use snell::explain::{Sightings, ViewGeometry, ViewScene, black_picture, explain, find};
 use snell::film::{Crop, Film};
+use snell::optics::glass::CATALOGUE;
 use snell::render::{Options, Progress};
 use snell::world::CompiledScene;
 use snell_formats::files::{InMemory, MAX_SCENE_BYTES, in_memory, sha256};
@@ -68,6 +69,11 @@ impl Session {
     pub fn scenes() -> String {
         let scenes = builtin::SCENES.iter().map(|(name, text)| json!({ "name": name, "text": text }));
         scenes.collect::<serde_json::Value>().to_string()
+    }
+
+    /// The names of the glasses of the catalogue: a list in JSON.
+    pub fn glasses() -> String {
+        CATALOGUE.iter().map(|glass| glass.name).collect::<serde_json::Value>().to_string()
     }
 
     /// The scene as text, in TOML.

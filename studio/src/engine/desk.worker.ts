@@ -1,6 +1,6 @@
 /** Answers questions about the scene, and puts the picture together from what the renderers have made. */
 
-import type { Session } from 'snell-wasm';
+import { Session } from 'snell-wasm';
 import type { Answers, Finding, FromDesk, Geometry, PictureOptions, Question, Revision, Sighting, ToDesk } from './protocol';
 import { brokenBy, changed, findingsOf, start } from './session';
 
@@ -29,6 +29,9 @@ function hear(message: ToDesk): void {
         const { x, y, width, height, values, finished } = message.part;
         session!.put(x, y, width, height, values, finished);
       }
+      return;
+    case 'statistics':
+      if (message.picture === picture) session!.put_statistics(message.statistics);
       return;
     case 'ask':
       return reply(message.id, message.question);
@@ -69,6 +72,8 @@ function answer(question: Question): Answers[Question['ask']] {
       return session!.values(question.x, question.y, question.width, question.height);
     case 'outcome':
       return { sha256: session!.film_sha256 ?? '', warnings: JSON.parse(session!.validate()) as Finding[] };
+    case 'glasses':
+      return JSON.parse(Session.glasses()) as string[];
     case 'png':
       return session!.png() as Uint8Array<ArrayBuffer>;
     case 'exr':

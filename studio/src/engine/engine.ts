@@ -163,6 +163,7 @@ export class Engine {
         break;
       case 'finished':
         renderer.finished = true;
+        this.tellDesk({ do: 'statistics', picture: message.picture, statistics: message.statistics });
         if (this.renderers.every(({ finished }) => finished)) void this.finish(message.picture);
         break;
       case 'collected':

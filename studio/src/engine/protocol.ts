@@ -99,7 +99,8 @@ export type FromRenderer =
   /** What was rendered lately; `covered` once each pixel has been, or one near it. */
   | { tell: 'patches'; picture: number; patches: Patch[]; covered: boolean; pixels: number; rays: number }
   | { tell: 'part'; picture: number; part: Part }
-  | { tell: 'finished'; picture: number }
+  /** With what was traced, for the desk alone. */
+  | { tell: 'finished'; picture: number; statistics: string }
   | { tell: 'collected'; picture: number }
   | { tell: 'broken'; message: string };
 
@@ -107,6 +108,7 @@ export type ToDesk =
   | { do: 'start'; module: WebAssembly.Module }
   | { do: 'gather'; picture: number; options: PictureOptions }
   | { do: 'part'; picture: number; part: Part }
+  | { do: 'statistics'; picture: number; statistics: string }
   | { do: 'ask'; id: number; question: Question };
 
 /** What only the desk answers. */
@@ -116,6 +118,7 @@ export type Question =
   | { ask: 'find'; object: string }
   | { ask: 'values'; x: number; y: number; width: number; height: number }
   | { ask: 'outcome'; picture: number }
+  | { ask: 'glasses' }
   | { ask: 'png' | 'exr' };
 
 export interface Answers {
@@ -125,6 +128,8 @@ export interface Answers {
   values: Float64Array;
   /** Of a finished picture. */
   outcome: { sha256: string; warnings: Finding[] };
+  /** The names of the catalogue. */
+  glasses: string[];
   png: Uint8Array<ArrayBuffer>;
   exr: Uint8Array<ArrayBuffer>;
 }

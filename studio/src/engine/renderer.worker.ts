@@ -82,7 +82,7 @@ class Work {
     this.show([...touched.values()]);
     if (session!.is_finished) {
       this.handOver();
-      tell({ tell: 'finished', picture: this.picture });
+      tell({ tell: 'finished', picture: this.picture, statistics: session!.statistics() });
     } else {
       this.goOn();
     }

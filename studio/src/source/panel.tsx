@@ -7,11 +7,17 @@ import type { Store } from '../store';
 /** Milliseconds without a key before the text is read. */
 const CALM = 250;
 
-export function SourcePanel({ store, glasses }: { store: Store; glasses: readonly string[] }) {
+export function SourcePanel({ store }: { store: Store }) {
   const place = useRef<HTMLDivElement>(null);
   useEffect(() => {
     let end = () => {};
     let gone = false;
+    let glasses: string[] = [];
+    store.engine.ask({ ask: 'glasses' }).then(
+      (names) => (glasses = names),
+      // Without them only their completion is missing.
+      () => {},
+    );
     // Only who looks at the text needs its editor, which is as large as the rest of the page.
     void import('./editor').then(({ SourceEditor }) => {
       if (gone) return;
