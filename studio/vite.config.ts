@@ -23,5 +23,5 @@ export default defineConfig({
     // The module is loaded while the page starts, not as text in it.
     assetsInlineLimit: 0,
   },
-  test: { include: ['src/**/*.test.ts', 'test/**/*.test.ts'], testTimeout: 120_000, hookTimeout: 120_000, fileParallelism: false },
+  test: { include: ['src/**/*.test.ts', 'test/**/*.test.ts', 'bench/**/*.bench.ts'], testTimeout: 120_000, hookTimeout: 120_000, fileParallelism: false },
 });

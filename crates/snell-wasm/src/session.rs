@@ -5,7 +5,7 @@ use crate::picture::{Asked, Changed, Picture};
 use crate::ready::{Given, Ready};
 use js_sys::{Array, Float64Array, Object, Reflect, Uint8Array, Uint32Array, try_iter};
 use serde_json::json;
-use snell::explain::{Sightings, ViewGeometry, ViewScene, black_picture, explain, find};
+use snell::explain::{Path, Sightings, ViewGeometry, ViewScene, black_picture, explain, find, only};
 use snell::film::{Crop, Film};
 use snell::optics::glass::CATALOGUE;
 use snell::render::{Options, Progress};
@@ -259,6 +259,15 @@ impl Session {
         let Sightings { paths, mask } = seen.ok_or_else(|| thrown(&[nothing_begun()]))?;
         let paths = paths.iter().map(|(path, pixels)| json!({ "path": path.to_string(), "pixels": pixels }));
         Ok(Seen { paths: paths.collect::<serde_json::Value>().to_string(), mask })
+    }
+
+    /// Where something is seen along one path, as `paths` has them: for each pixel, row by row, 1 if it is, else 0. It takes as long as
+    /// finding.
+    pub fn find_path(&self, path: &str) -> Answer<Vec<f64>> {
+        let path = or_throw(Path::parse(path).map_err(|error| Report::error(error.to_string())))?;
+        let seen = only(&self.ready.compiled, &path, &Options::default());
+        let seen = seen.ok_or_else(|| thrown(&[nothing_begun()]))?;
+        Ok(seen.iter().map(|color| if color.mean() == 0.0 { 0.0 } else { 1.0 }).collect())
     }
 
     /// What is odd about the scene, and about its picture once that is finished: a list in JSON.
