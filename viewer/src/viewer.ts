@@ -112,7 +112,7 @@ export class Viewer {
   }
 
   select(id: number | null): void {
-    if (id !== null && this.model?.nodes[id] === undefined) throw new RangeError(`there is no ray ${id} in this sample`);
+    this.check(id);
     if (id === this.state.selected) return;
     this.state.selected = id;
     if (this.panel.model === this.model) this.panel.select(id);
@@ -122,6 +122,7 @@ export class Viewer {
 
   /** Brings a ray forward as if the pointer were on it. */
   hover(id: number | null): void {
+    this.check(id);
     if (id === this.state.hovered) return;
     this.state.hovered = id;
     if (this.panel.model === this.model) this.panel.hover(id);
@@ -246,6 +247,10 @@ export class Viewer {
     this.drawing?.dispose();
     this.panel.dispose();
     this.host.remove();
+  }
+
+  private check(id: number | null): void {
+    if (id !== null && this.model?.nodes[id] === undefined) throw new RangeError(`there is no ray ${id} in this sample`);
   }
 
   /** Draws the rays of a sample, one of which may be selected. */

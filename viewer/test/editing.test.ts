@@ -146,6 +146,23 @@ test('a mesh is turned about an axis, and scaled along one', async () => {
   await page.close();
 });
 
+test('the camera is moved by its eye, and by what it looks at', async () => {
+  const camera = { kind: 'camera', index: 0, name: 'camera' } as const;
+  const { page } = await openStudio('camera', { selected: camera, handles: 'move', target: [0, 0.85, 0] });
+  await pull(page, await placeOf(page, [0.6, 2.5, 7.4]), [0, -40]);
+  const [eye] = (await movements(page)).at(-1)!.slice(1) as [Movement];
+  expect(eye).toMatchObject({ kind: 'move', object: camera, at: [0.6, 2.5, 7.4] });
+  await page.mouse.click(...(await placeOf(page, [0, 0.85, 0])));
+  const target = { ...camera, index: 1 };
+  expect((await heard(page)).at(-1)).toEqual(['object', target]);
+  await page.evaluate((selected) => window.viewer.setObjects({ selected, handles: 'move', snap: 0.5, target: [0, 0.85, 0] }), target);
+  await settled(page);
+  await page.locator('.stage').screenshot({ path: `${OUT}handles-target.png` });
+  await pull(page, await placeOf(page, [0, 0.85, 0]), [0, -80]);
+  expect((await movements(page)).at(-1)![1]).toMatchObject({ object: target, at: [0, 0.85, 0] });
+  await page.close();
+});
+
 test('Escape takes a drag back', async () => {
   const { page } = await openStudio('escape', { selected: BALL, handles: 'move' });
   const calm = async () => {

@@ -19,7 +19,7 @@ import { pick, type PickedLine } from './picking';
 import { type DrawnSample, type RayState, Rays } from './rays';
 import { Stage } from './stage';
 import { stillOf } from './still';
-import { objectAt } from './subjects';
+import { axisPoint, objectAt } from './subjects';
 import { scaledNodes, scaledScene, unitFor } from './unit';
 import { fromLight, overview, throughCamera, type Viewpoint } from './viewpoints';
 
@@ -62,14 +62,14 @@ export class Drawing {
   private tree: RayTreeDocument | null;
   private model: TreeModel | null = null;
   private sample: DrawnSample | null = null;
-  private readonly objects: Objects;
+  readonly objects: Objects;
   private readonly apparatus: Apparatus;
   private readonly rays: Rays;
   private readonly editor: Editor;
-  private selected: ObjectRef | null = null;
+  private editing: Editing = { selected: null, handles: null, snap: null };
   private lines: PickedLine[] = [];
   private generation = Infinity;
-  private readonly target = element('span', { class: 'target', 'aria-hidden': true, hidden: true });
+  private readonly pixelLabel = element('span', { class: 'target', 'aria-hidden': true, hidden: true });
   private pressed = new Vector3();
   private pictures = 0;
   /** With the rays that are shown. */
@@ -107,7 +107,7 @@ export class Drawing {
       this.names.update(this.stage.camera, x, y);
       this.events.frame();
     };
-    this.root.append(this.stage.canvas, this.names.root, this.target);
+    this.root.append(this.stage.canvas, this.names.root, this.pixelLabel);
     this.stage.onResize = () => this.standing && this.stage.show(this.standing(), false);
     this.stage.onMove = () => (this.standing = null);
     this.listen(this.stage.canvas);
@@ -180,7 +180,7 @@ export class Drawing {
 
   /** What is selected in the scene, and how it can be moved. */
   setEditing(editing: Editing): void {
-    this.selected = editing.selected;
+    this.editing = editing;
     this.editor.set(editing);
     this.stage.requestFrame();
   }
@@ -190,7 +190,7 @@ export class Drawing {
     const figure = this.figure(state);
     this.rays.show(this.sample, figure, state, this.theme);
     this.names.set('angles', (figure?.arcs ?? []).map(({ at, text }) => ({ text, at: new Vector3(...at), kind: 'angle', offset: 0, rank: 0 })));
-    this.names.setImportant(new Set([this.selected?.name ?? '', ...[state.selected, state.hovered].map((id) => this.objectMetBy(id))]));
+    this.names.setImportant(new Set([this.editing.selected?.name ?? '', ...[state.selected, state.hovered].map((id) => this.objectMetBy(id))]));
     this.stage.canvas.classList.toggle('on-ray', state.hovered !== null);
     this.stage.requestFrame();
   }
@@ -231,6 +231,13 @@ export class Drawing {
     this.apparatus.dispose();
     this.plane.dispose();
     this.stage.dispose();
+  }
+
+  /** What the camera looks at, while the camera is selected. */
+  get target(): Vector3 | null {
+    const { selected, target } = this.editing;
+    if (selected?.kind !== 'camera') return null;
+    return target ? new Vector3(...target).multiplyScalar(this.unit) : axisPoint(this.scene, this.extent);
   }
 
   private get up(): Vector3 {
@@ -318,10 +325,10 @@ export class Drawing {
   /** Says which pixel of the picture is under the pointer. */
   private aim(pixel: Pixel | null, x = 0, y = 0): void {
     this.stage.canvas.classList.toggle('on-pixel', pixel !== null);
-    this.target.hidden = pixel === null;
+    this.pixelLabel.hidden = pixel === null;
     if (pixel === null) return;
-    this.target.textContent = pixel.join(', ');
-    this.target.style.transform = `translate(${x}px, ${y}px) translate(0.7rem, -1.9rem)`;
+    this.pixelLabel.textContent = pixel.join(', ');
+    this.pixelLabel.style.transform = `translate(${x}px, ${y}px) translate(0.7rem, -1.9rem)`;
   }
 
   private rayAt(event: MouseEvent): number | null {
@@ -334,13 +341,13 @@ export class Drawing {
   private pointedAt(event: MouseEvent, hasty: boolean): { pixel?: Pixel; object?: ObjectRef } | null {
     const place = this.stage.pixelOf(event);
     const pixel = this.picksPixels ? this.plane.pixelAt(this.stage.lineOfSight(...place)) : null;
-    const object = this.picksObjects ? objectAt(this.scene, this.extent, this.objects, this.stage, ...place, hasty) : null;
+    const object = this.picksObjects ? objectAt(this, ...place, hasty) : null;
     if (pixel !== null && (object === null || pixel.distance < object.distance)) return { pixel: pixel.at };
     return object && { object: object.object };
   }
 
   private objectAt(event: MouseEvent): ObjectRef | null {
-    return objectAt(this.scene, this.extent, this.objects, this.stage, ...this.stage.pixelOf(event), false)?.object ?? null;
+    return objectAt(this, ...this.stage.pixelOf(event), false)?.object ?? null;
   }
 }
 

@@ -74,6 +74,14 @@ export function outline(object: ObjectRef, scene: ViewScene, at: Vector3, camera
   return { lines: [], marks: [{ at: at.toArray(), color: theme.accent, size, opacity: 1, shape: 'ring' }] };
 }
 
+/** From the camera's eye to what it looks at. */
+export function axis(eye: Vec3, target: Vec3, theme: Theme): { lines: DrawnLine[]; marks: Mark[] } {
+  return {
+    lines: [{ from: eye, to: target, open: false, color: theme.accent, width: 1.4, opacity: 0.8, dashed: true }],
+    marks: [{ at: target, color: theme.accent, size: 8, opacity: 1 }],
+  };
+}
+
 function boxEdges(scene: ViewScene, index: number): Line[] {
   const { min, max } = boxOf(scene.meshes[index]!);
   const corner = (n: number): Vec3 => [n & 1 ? max.x : min.x, n & 2 ? max.y : min.y, n & 4 ? max.z : min.z];
