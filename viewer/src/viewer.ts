@@ -322,7 +322,11 @@ export class Viewer {
     drawing.picksObjects = this.listeners.object.size > 0;
     drawing.mark(this.pixel, this.tree && this.pixel === this.tree.pixel ? this.tree.size : size);
     this.pictureBox.hidden = drawing.plane.size === null;
-    this.alternative.textContent = alternative(this.scene, this.tree !== null, drawing.picksPixels && this.pixelsSize() !== null, this.editing.handles !== null);
+    this.alternative.textContent = alternative(this.scene, {
+      tree: this.tree !== null,
+      pixels: drawing.picksPixels && this.pixelsSize() !== null,
+      handles: this.editing.handles !== null,
+    });
     const asks = drawing.picksPixels && size !== null && this.pixel === null;
     this.showNote({ hint: asks ? 'Look through the camera and click a pixel to see its rays.' : '' });
     const rays = this.tree ? ` and the rays of pixel (${this.tree.pixel.join(', ')})` : '';

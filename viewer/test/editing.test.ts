@@ -4,6 +4,8 @@ import type { Browser, Page } from 'playwright-core';
 import { afterAll, beforeAll, expect, test } from 'vitest';
 import type { Vec3 } from '../src/data';
 import type { Editing, Movement, ObjectRef } from '../src/editing';
+import type { Handle } from '../src/three/handles';
+import type { Stage } from '../src/three/stage';
 import { launch, open, OUT, settled } from './browser';
 import { glass } from './fixture';
 
@@ -11,6 +13,12 @@ declare global {
   interface Window {
     heard: [string, Movement | ObjectRef | null][];
   }
+}
+
+/** Private parts of the drawing. */
+interface Inside {
+  stage: Stage;
+  editor: { handles: Handle[] };
 }
 
 let browser: Browser;
@@ -63,9 +71,9 @@ async function placeOf(page: Page, [x, y, z]: Vec3): Promise<[number, number]> {
 async function handle(page: Page, grip: object): Promise<[number, number]> {
   const box = (await page.locator('canvas').boundingBox())!;
   const at = await page.evaluate((grip) => {
-    const { stage, editor } = window.viewer['drawing']! as never as { stage: { onScreen(at: unknown): [number, number]; camera: { position: { clone(): { fromArray(at: number[]): unknown } } } }; editor: { handles: { grip: object; lines: { to: number[] }[] }[] } };
+    const { stage, editor } = window.viewer['drawing']! as never as Inside;
     const found = editor.handles.find((handle) => JSON.stringify(handle.grip) === JSON.stringify(grip))!;
-    return stage.onScreen(stage.camera.position.clone().fromArray(found.lines[0]!.to));
+    return stage.onScreen(stage.camera.position.clone().fromArray(found.lines[0]!.to))!;
   }, grip);
   return [box.x + at[0], box.y + at[1]];
 }

@@ -5,7 +5,7 @@ import { type Figure, figureOf } from '../angles';
 import type { RayNode, RayTreeDocument, ViewScene } from '../data';
 import { element } from '../dom';
 import type { Editing, ObjectRef } from '../editing';
-import { rayLine } from '../lines';
+import { dot, rayLine } from '../lines';
 import type { TreeModel } from '../model';
 import { decodePicture, middleOf, type Pixel } from '../pixels';
 import type { Theme } from '../theme';
@@ -42,7 +42,7 @@ const ANGLES = 0.09;
 /** Pixels that the pointer may move between down and up in a click. */
 const CLICK = 4;
 
-/** Of the old radius: scenes that grow less, or move less, are still the same drawing. */
+/** Of the radius: what grows or moves less is still the same drawing, in which the arrows of lights and the like stay. */
 const [GROWS, MOVES] = [1.5, 0.5];
 
 export class Drawing {
@@ -72,11 +72,7 @@ export class Drawing {
   private readonly pixelLabel = element('span', { class: 'target', 'aria-hidden': true, hidden: true });
   private pressed = new Vector3();
   private pictures = 0;
-  /** With the rays that are shown. */
-  private readonly overview = () => {
-    const home = extentOf(this.scene, scaledNodes(strongestOf(this.tree), this.unit));
-    return overview(this.scene.camera, home, this.stage.aspect, this.plane.size !== null);
-  };
+  private readonly overview = () => overview(this.scene.camera, this.home(), this.stage.aspect, this.plane.size !== null);
   /** The viewpoint that the eye is at, fitted to each new size; `null` when somebody has moved it. */
   private standing: (() => Viewpoint) | null = this.overview;
 
@@ -125,10 +121,10 @@ export class Drawing {
       this.setSample();
     } else {
       this.scene = scaledScene(given, this.unit);
-      const { center, radius } = extentOf(this.scene, []);
-      const ratio = radius / this.extent.radius;
-      const same = ratio < GROWS && ratio > 1 / GROWS && center.distanceTo(this.extent.center) < MOVES * this.extent.radius;
-      if (!same) this.extent = extentOf(this.scene, []);
+      const next = this.home();
+      const { center, radius } = this.extent;
+      const ratio = next.radius / radius;
+      if (ratio > GROWS || ratio < 1 / GROWS || next.center.distanceTo(center) > MOVES * radius) this.extent = next;
     }
     this.showScene();
     if (reset) this.reset(false);
@@ -189,8 +185,10 @@ export class Drawing {
     this.generation = state.generation;
     const figure = this.figure(state);
     this.rays.show(this.sample, figure, state, this.theme);
-    this.names.set('angles', (figure?.arcs ?? []).map(({ at, text }) => ({ text, at: new Vector3(...at), kind: 'angle', offset: 0, rank: 0 })));
-    this.names.setImportant(new Set([this.editing.selected?.name ?? '', ...[state.selected, state.hovered].map((id) => this.objectMetBy(id))]));
+    const arcs = figure?.arcs ?? [];
+    this.names.set('angles', arcs.map(({ at, text }) => ({ text, at: new Vector3(...at), kind: 'angle', offset: 0, rank: 0 })));
+    const met = [state.selected, state.hovered].map((id) => this.objectMetBy(id));
+    this.names.setImportant(new Set([this.editing.selected?.name ?? '', ...met]));
     this.stage.canvas.classList.toggle('on-ray', state.hovered !== null);
     this.stage.requestFrame();
   }
@@ -253,6 +251,11 @@ export class Drawing {
     return scene;
   }
 
+  /** The extent of the scene as it is, with the rays that are shown. */
+  private home(): Extent {
+    return extentOf(this.scene, scaledNodes(strongestOf(this.tree), this.unit));
+  }
+
   private showScene(): void {
     this.objects.setScene(this.scene, this.theme);
     this.apparatus.set(this.scene, this.extent, this.theme);
@@ -283,7 +286,7 @@ export class Drawing {
     const node = nodes[selected]!;
     if (node.hit === null) return null;
     const { normal, t } = node.hit;
-    const back = model.children(selected).some((child) => nodes[child]!.dir.reduce((sum, value, axis) => sum + value * normal[axis]!, 0) > 0);
+    const back = model.children(selected).some((child) => dot(nodes[child]!.dir, normal) > 0);
     return figureOf(node, back, Math.min(ANGLES * this.extent.radius, t / 2));
   }
 

@@ -8,7 +8,7 @@ import { Drag, type Grip } from './drag';
 import { axis, drawnHandle, type Handle, handlesFor, outline } from './handles';
 import { LineSet } from './line-set';
 import { MarkSet } from './marks';
-import { pick } from './picking';
+import { FINGER, pick } from './picking';
 import type { Stage } from './stage';
 import { placeOf, type Places } from './subjects';
 
@@ -96,12 +96,13 @@ export class Editor {
       return this.marks.set([]);
     }
     const { camera, uniforms } = this.stage;
+    const seen = { object: selected, at, scene, camera, theme };
     const distance = at.distanceTo(camera.position);
     const pixel = (2 * Math.tan(MathUtils.degToRad(camera.fov) / 2) * distance) / (camera.view?.fullHeight ?? uniforms.size.value.y);
-    if (handles !== null) this.handles = handlesFor(selected, scene, handles, at, camera, pixel, theme);
+    if (handles !== null) this.handles = handlesFor(seen, handles, pixel);
     const pulled = this.dragging ? this.pull!.drag.grip : this.hovered?.grip;
     const parts = [
-      outline(selected, scene, at, camera, theme),
+      outline(seen),
       ...(target === null ? [] : [axis(scene.camera.eye, target.toArray(), theme)]),
       ...this.handles.map((handle) => drawnHandle(handle, pulled !== undefined && sameGrip(handle.grip, pulled))),
     ];
@@ -136,7 +137,8 @@ export class Editor {
   private handleAt(event: MouseEvent): Handle | null {
     const lines = this.handles.flatMap(({ lines }, id) => lines.map((line) => ({ id, ...line })));
     const { x: width, y: height } = this.stage.uniforms.size.value;
-    const found = pick(lines, ...this.stage.pixelOf(event), this.stage.projection, width, height);
+    const tolerance = event instanceof PointerEvent && event.pointerType === 'touch' ? FINGER : undefined;
+    const found = pick(lines, ...this.stage.pixelOf(event), this.stage.projection, width, height, tolerance);
     return found === null ? null : this.handles[found]!;
   }
 
@@ -221,7 +223,8 @@ export class Editor {
     const step = KEYS[event.key];
     const { selected, snap, handles } = this.editing;
     const at = this.place();
-    if (step === undefined || !event.altKey || event.ctrlKey || event.metaKey || selected === null || at === null || handles === null) return;
+    if (step === undefined || !event.altKey || event.ctrlKey || event.metaKey) return;
+    if (selected === null || at === null || handles === null) return;
     event.preventDefault();
     event.stopPropagation();
     const { unit, extent } = this.around();
