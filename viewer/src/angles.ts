@@ -1,7 +1,7 @@
 /** The figure of refraction at the end of a ray: the normal, and the angles to it before and behind the surface. */
 
 import type { RayNode, Vec3 } from './data';
-import { along, type Line } from './lines';
+import { along, dot, type Line } from './lines';
 import { degrees } from './words';
 
 export interface Arc {
@@ -46,7 +46,8 @@ export function figureOf({ dir, hit }: RayNode, reflected: boolean, radius: numb
     },
     arcs: [
       arc(angle_in, 1, 1, text(angle_in)),
-      ...(reflected || total_reflection ? [arc(angle_in, 1, -1, total_reflection ? `${text(angle_in)}, total reflection` : text(angle_in))] : []),
+      ...(total_reflection ? [arc(angle_in, 1, -1, `${text(angle_in)}, total reflection`)] : []),
+      ...(reflected && !total_reflection ? [arc(angle_in, 1, -1, text(angle_in))] : []),
       ...(angle_out === null ? [] : [arc(angle_out, -1, -1, text(angle_out))]),
     ],
   };
@@ -54,7 +55,7 @@ export function figureOf({ dir, hit }: RayNode, reflected: boolean, radius: numb
 
 /** Along the surface, to the side that the ray comes from. */
 function tangent(dir: Vec3, normal: Vec3): Vec3 {
-  const cos = dir.reduce((sum, value, axis) => sum - value * normal[axis]!, 0);
+  const cos = -dot(dir, normal);
   const side = dir.map((value, axis) => -value - cos * normal[axis]!) as Vec3;
   const length = Math.hypot(...side);
   return length > 0 ? (side.map((value) => value / length) as Vec3) : [0, 0, 0];

@@ -47,6 +47,10 @@ export function shadowLines(node: RayNode, reach: number): ShadowLine[] {
   });
 }
 
+export function dot(a: Vec3, b: Vec3): number {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
 export function along(origin: Vec3, dir: Vec3, length: number): Vec3 {
   return [origin[0] + length * dir[0], origin[1] + length * dir[1], origin[2] + length * dir[2]];
 }

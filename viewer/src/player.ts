@@ -99,7 +99,7 @@ export class Player {
     const color = model.colorUntil(at);
     const sum = (values: number[]) => values.reduce((a, b) => a + b, 0);
     const whole = sum(model.colorUntil(model.last));
-    const share = whole > 0 ? `, ${percent(Math.min(1, sum(color) / whole))} of the light` : '';
+    const share = whole > 0 ? `, ${percent(Math.min(1, sum(color) / whole))}` : '';
     const text = `Generation ${at} of ${model.last}: ${rays} ${rays === 1 ? 'ray' : 'rays'}${share}`;
     this.text.textContent = text;
     this.slider.value = String(at);

@@ -38,9 +38,13 @@ export function spectralColor(nm: number, [lightness, chroma]: [number, number])
   for (let part = chroma; ; part -= 0.01) {
     const rgb = fromOklab(lightness, part * Math.cos(angle), part * Math.sin(angle));
     if (part <= 0 || rgb.every((value) => value >= 0 && value <= 1)) {
-      return `#${rgb.map((value) => Math.round(255 * srgbFromLinear(Math.min(1, Math.max(0, value)))).toString(16).padStart(2, '0')).join('')}`;
+      return `#${rgb.map((value) => hex(srgbFromLinear(Math.min(1, Math.max(0, value))))).join('')}`;
     }
   }
+}
+
+function hex(value: number): string {
+  return Math.round(255 * value).toString(16).padStart(2, '0');
 }
 
 /** Linear sRGB, after Björn Ottosson (2020). */

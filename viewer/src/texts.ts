@@ -32,13 +32,13 @@ function header(title: string, facts: string, ...before: HTMLElement[]): HTMLEle
 }
 
 /** What the drawing shows, for those who do not see it. */
-export function alternative({ spheres, meshes, lights }: ViewScene, withTree: boolean, withPixels: boolean, withHandles: boolean): string {
+export function alternative({ spheres, meshes, lights }: ViewScene, has: { tree: boolean; pixels: boolean; handles: boolean }): string {
   return [
     `Spheres: ${names(spheres)}. Meshes: ${names(meshes)}. Lights: ${names(lights)}.`,
-    ...(withTree ? ['The tree of rays beside the drawing says where each ray goes and what it adds.'] : []),
+    ...(has.tree ? ['The tree of rays beside the drawing says where each ray goes and what it adds.'] : []),
     'Arrow keys turn the drawing, plus and minus go nearer and farther.',
-    ...(withHandles ? ['Alt with an arrow key moves what is selected; Alt with Page Up and Page Down moves it away and nearer.'] : []),
-    ...(withPixels ? ['Shift with an arrow key explains the next pixel in that direction.'] : []),
+    ...(has.handles ? ['Alt with an arrow key moves what is selected; Alt with Page Up and Page Down moves it away and nearer.'] : []),
+    ...(has.pixels ? ['Shift with an arrow key explains the next pixel in that direction.'] : []),
   ].join(' ');
 }
 

@@ -149,7 +149,8 @@ export class TreeView {
   private subtotal(id: number): Color {
     const { nodes } = this.model;
     if (id >= 0) return nodes[id]!.subtotal;
-    return this.model.others(~id).reduce<Color>((sum, other) => sum.map((value, channel) => value + nodes[other]!.subtotal[channel]!) as Color, [0, 0, 0]);
+    const others = this.model.others(~id).map((other) => nodes[other]!.subtotal);
+    return others.reduce<Color>((sum, own) => [sum[0] + own[0], sum[1] + own[1], sum[2] + own[2]], [0, 0, 0]);
   }
 }
 

@@ -114,7 +114,7 @@ export class Viewer {
   }
 
   select(id: number | null): void {
-    if (id !== null && this.model?.nodes[id] === undefined) throw new RangeError(`there is no ray ${id} in this sample`);
+    this.check(id);
     if (id === this.state.selected) return;
     this.state.selected = id;
     if (this.panel.model === this.model) this.panel.select(id);
@@ -124,6 +124,7 @@ export class Viewer {
 
   /** Brings a ray forward as if the pointer were on it. */
   hover(id: number | null): void {
+    this.check(id);
     if (id === this.state.hovered) return;
     this.state.hovered = id;
     if (this.panel.model === this.model) this.panel.hover(id);
@@ -250,6 +251,10 @@ export class Viewer {
     this.host.remove();
   }
 
+  private check(id: number | null): void {
+    if (id !== null && this.model?.nodes[id] === undefined) throw new RangeError(`there is no ray ${id} in this sample`);
+  }
+
   /** Draws the rays of a sample, one of which may be selected. */
   private draw(tree: RayTreeDocument | null, model: TreeModel | null, selected: number | null): void {
     this.tree = tree;
@@ -319,7 +324,11 @@ export class Viewer {
     drawing.picksObjects = this.listeners.object.size > 0;
     drawing.mark(this.pixel, this.tree && this.pixel === this.tree.pixel ? this.tree.size : size);
     this.pictureBox.hidden = drawing.plane.size === null;
-    this.alternative.textContent = alternative(this.scene, this.tree !== null, drawing.picksPixels && this.pixelsSize() !== null, this.editing.handles !== null);
+    this.alternative.textContent = alternative(this.scene, {
+      tree: this.tree !== null,
+      pixels: drawing.picksPixels && this.pixelsSize() !== null,
+      handles: this.editing.handles !== null,
+    });
     const asks = drawing.picksPixels && size !== null && this.pixel === null;
     this.showNote({ hint: asks ? 'Look through the camera and click a pixel to see its rays.' : '' });
     const rays = this.tree ? ` and the rays of pixel (${this.tree.pixel.join(', ')})` : '';

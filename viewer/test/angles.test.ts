@@ -1,15 +1,17 @@
 import { expect, test } from 'vitest';
 import { figureOf } from '../src/angles';
 import type { Hit, Vec3 } from '../src/data';
+import { dot } from '../src/lines';
 import { glass, ray } from './fixture';
 
 const degrees = (angle: number) => (angle * Math.PI) / 180;
 const dir = (angle: number): Vec3 => [Math.sin(degrees(angle)), -Math.cos(degrees(angle)), 0];
-const between = (a: Vec3, b: Vec3) => (Math.acos(Math.min(1, a.reduce((sum, value, axis) => sum + value * b[axis]!, 0) / (Math.hypot(...a) * Math.hypot(...b)))) * 180) / Math.PI;
+const between = (a: Vec3, b: Vec3) => (Math.acos(Math.min(1, dot(a, b) / (Math.hypot(...a) * Math.hypot(...b)))) * 180) / Math.PI;
 
 /** A ray that falls on the ground at (2, 0, 0). */
 function falling(angle: number, changes: Partial<Hit> = {}) {
-  const hit = { ...glass().tree.samples[0]!.nodes[0]!.hit!, point: [2, 0, 0] as Vec3, normal: [0, 1, 0] as Vec3, angle_in: angle, angle_out: null, total_reflection: false, ...changes };
+  const ground = { point: [2, 0, 0] as Vec3, normal: [0, 1, 0] as Vec3, angle_in: angle, angle_out: null, total_reflection: false };
+  const hit = { ...glass().tree.samples[0]!.nodes[0]!.hit!, ...ground, ...changes };
   return ray({ dir: dir(angle), hit, ended: null });
 }
 const from = ([x, y, z]: Vec3): Vec3 => [x - 2, y, z];
@@ -53,7 +55,7 @@ test('the real rays of the fixture end where their arcs do', () => {
     const { normal, point } = node.hit!;
     const { arcs } = figureOf(node, false, 1)!;
     const behind = arcs.at(-1)!.points.at(-1)!.map((value, axis) => value - point[axis]!) as Vec3;
-    const next = nodes.find(({ parent, dir }) => parent === node.id && dir.reduce((sum, value, axis) => sum + value * normal[axis]!, 0) < 0);
+    const next = nodes.find(({ parent, dir }) => parent === node.id && dot(dir, normal) < 0);
     if (next === undefined) continue;
     followed++;
     expect(between(behind, next.dir)).toBeLessThan(0.01);

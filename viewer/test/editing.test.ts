@@ -4,6 +4,8 @@ import type { Browser, Page } from 'playwright-core';
 import { afterAll, beforeAll, expect, test } from 'vitest';
 import type { Vec3 } from '../src/data';
 import type { Editing, Movement, ObjectRef } from '../src/editing';
+import type { Handle } from '../src/three/handles';
+import type { Stage } from '../src/three/stage';
 import { launch, open, OUT, settled } from './browser';
 import { glass } from './fixture';
 
@@ -11,6 +13,12 @@ declare global {
   interface Window {
     heard: [string, Movement | ObjectRef | null][];
   }
+}
+
+/** Private parts of the drawing. */
+interface Inside {
+  stage: Stage;
+  editor: { handles: Handle[] };
 }
 
 let browser: Browser;
@@ -63,9 +71,9 @@ async function placeOf(page: Page, [x, y, z]: Vec3): Promise<[number, number]> {
 async function handle(page: Page, grip: object): Promise<[number, number]> {
   const box = (await page.locator('canvas').boundingBox())!;
   const at = await page.evaluate((grip) => {
-    const { stage, editor } = window.viewer['drawing']! as never as { stage: { onScreen(at: unknown): [number, number]; camera: { position: { clone(): { fromArray(at: number[]): unknown } } } }; editor: { handles: { grip: object; lines: { to: number[] }[] }[] } };
+    const { stage, editor } = window.viewer['drawing']! as never as Inside;
     const found = editor.handles.find((handle) => JSON.stringify(handle.grip) === JSON.stringify(grip))!;
-    return stage.onScreen(stage.camera.position.clone().fromArray(found.lines[0]!.to));
+    return stage.onScreen(stage.camera.position.clone().fromArray(found.lines[0]!.to))!;
   }, grip);
   return [box.x + at[0], box.y + at[1]];
 }
@@ -143,6 +151,23 @@ test('a mesh is turned about an axis, and scaled along one', async () => {
   const scale = (await movements(page)).at(-1)![1] as { by: Vec3 };
   expect(scale.by[0]).toBeGreaterThan(1.3);
   expect(scale.by.slice(1)).toEqual([1, 1]);
+  await page.close();
+});
+
+test('the camera is moved by its eye, and by what it looks at', async () => {
+  const camera = { kind: 'camera', index: 0, name: 'camera' } as const;
+  const { page } = await openStudio('camera', { selected: camera, handles: 'move', target: [0, 0.85, 0] });
+  await pull(page, await placeOf(page, [0.6, 2.5, 7.4]), [0, -40]);
+  const [eye] = (await movements(page)).at(-1)!.slice(1) as [Movement];
+  expect(eye).toMatchObject({ kind: 'move', object: camera, at: [0.6, 2.5, 7.4] });
+  await page.mouse.click(...(await placeOf(page, [0, 0.85, 0])));
+  const target = { ...camera, index: 1 };
+  expect((await heard(page)).at(-1)).toEqual(['object', target]);
+  await page.evaluate((selected) => window.viewer.setObjects({ selected, handles: 'move', snap: 0.5, target: [0, 0.85, 0] }), target);
+  await settled(page);
+  await page.locator('.stage').screenshot({ path: `${OUT}handles-target.png` });
+  await pull(page, await placeOf(page, [0, 0.85, 0]), [0, -80]);
+  expect((await movements(page)).at(-1)![1]).toMatchObject({ object: target, at: [0, 0.85, 0] });
   await page.close();
 });
 

@@ -5,6 +5,8 @@ import { existsSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 import type { Browser } from 'playwright-core';
 import { afterAll, beforeAll, describe, expect, test } from 'vitest';
+import type { RayTreeDocument } from '../src/data';
+import { TreeModel } from '../src/model';
 import { launch, openFile, OUT } from './browser';
 
 const SNELL = process.env.SNELL ?? fileURLToPath(new URL('../../target/ci/snell', import.meta.url));
@@ -36,6 +38,17 @@ describe.runIf(existsSync(SNELL))('a page of the command', () => {
     expect(canvas.length).toBeGreaterThan(10_000);
     expect(trouble).toEqual([]);
     await shown.close();
+  });
+
+  test('builds up to the colour of the pixel, bit for bit', () => {
+    for (const [scene, pixel] of [['lecture/default', '190,300'], ['gallery/prism', '300,230'], ['gallery/plates', '500,200']] as const) {
+      const { samples } = JSON.parse(execFileSync(SNELL, ['explain', scene, pixel, '--json'], { encoding: 'utf8' })) as RayTreeDocument;
+      for (const { nodes, color } of samples) {
+        const model = new TreeModel(nodes);
+        expect(model.colorUntil(model.last)).toEqual(color);
+        expect(model.colorUntil(model.last).some((value) => value > 0)).toBe(true);
+      }
+    }
   });
 
   test('shows panes, media and colours of light', async () => {

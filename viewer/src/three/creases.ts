@@ -1,6 +1,7 @@
 /** The edges of a mesh at which it is not smooth, and those at which it ends. */
 
 import type { Numbers, Vec3, ViewMesh } from '../data';
+import { dot } from '../lines';
 import { boxOf } from './extent';
 
 export type Edge = [Vec3, Vec3];
@@ -69,8 +70,4 @@ function normalOf([a, b, c]: [Vec3, Vec3, Vec3]): Vec3 | null {
   const normal: Vec3 = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
   const length = Math.hypot(...normal);
   return length > 0 ? (normal.map((value) => value / length) as Vec3) : null;
-}
-
-function dot(a: Vec3, b: Vec3): number {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }

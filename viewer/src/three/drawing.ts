@@ -5,7 +5,7 @@ import { type Figure, figureOf } from '../angles';
 import type { RayNode, RayTreeDocument, ViewScene } from '../data';
 import { element } from '../dom';
 import type { Editing, ObjectRef } from '../editing';
-import { rayLine } from '../lines';
+import { dot, rayLine } from '../lines';
 import type { TreeModel } from '../model';
 import { decodePicture, middleOf, type Pixel } from '../pixels';
 import type { Theme } from '../theme';
@@ -19,7 +19,7 @@ import { pick, type PickedLine } from './picking';
 import { type DrawnSample, type RayState, Rays } from './rays';
 import { Stage } from './stage';
 import { stillOf } from './still';
-import { objectAt } from './subjects';
+import { axisPoint, objectAt } from './subjects';
 import { scaledNodes, scaledScene, unitFor } from './unit';
 import { fromLight, overview, throughCamera, type Viewpoint } from './viewpoints';
 
@@ -42,7 +42,7 @@ const ANGLES = 0.09;
 /** Pixels that the pointer may move between down and up in a click. */
 const CLICK = 4;
 
-/** Of the old radius: scenes that grow less, or move less, are still the same drawing. */
+/** Of the radius: what grows or moves less is still the same drawing, in which the arrows of lights and the like stay. */
 const [GROWS, MOVES] = [1.5, 0.5];
 
 export class Drawing {
@@ -62,21 +62,17 @@ export class Drawing {
   private tree: RayTreeDocument | null;
   private model: TreeModel | null = null;
   private sample: DrawnSample | null = null;
-  private readonly objects: Objects;
+  readonly objects: Objects;
   private readonly apparatus: Apparatus;
   private readonly rays: Rays;
   private readonly editor: Editor;
-  private selected: ObjectRef | null = null;
+  private editing: Editing = { selected: null, handles: null, snap: null };
   private lines: PickedLine[] = [];
   private generation = Infinity;
-  private readonly target = element('span', { class: 'target', 'aria-hidden': true, hidden: true });
+  private readonly pixelLabel = element('span', { class: 'target', 'aria-hidden': true, hidden: true });
   private pressed = new Vector3();
   private pictures = 0;
-  /** With the rays that are shown. */
-  private readonly overview = () => {
-    const home = extentOf(this.scene, scaledNodes(strongestOf(this.tree), this.unit));
-    return overview(this.scene.camera, home, this.stage.aspect, this.plane.size !== null);
-  };
+  private readonly overview = () => overview(this.scene.camera, this.home(), this.stage.aspect, this.plane.size !== null);
   /** The viewpoint that the eye is at, fitted to each new size; `null` when somebody has moved it. */
   private standing: (() => Viewpoint) | null = this.overview;
 
@@ -107,7 +103,7 @@ export class Drawing {
       this.names.update(this.stage.camera, x, y);
       this.events.frame();
     };
-    this.root.append(this.stage.canvas, this.names.root, this.target);
+    this.root.append(this.stage.canvas, this.names.root, this.pixelLabel);
     this.stage.onResize = () => this.standing && this.stage.show(this.standing(), false);
     this.stage.onMove = () => (this.standing = null);
     this.listen(this.stage.canvas);
@@ -125,10 +121,10 @@ export class Drawing {
       this.setSample();
     } else {
       this.scene = scaledScene(given, this.unit);
-      const { center, radius } = extentOf(this.scene, []);
-      const ratio = radius / this.extent.radius;
-      const same = ratio < GROWS && ratio > 1 / GROWS && center.distanceTo(this.extent.center) < MOVES * this.extent.radius;
-      if (!same) this.extent = extentOf(this.scene, []);
+      const next = this.home();
+      const { center, radius } = this.extent;
+      const ratio = next.radius / radius;
+      if (ratio > GROWS || ratio < 1 / GROWS || next.center.distanceTo(center) > MOVES * radius) this.extent = next;
     }
     this.showScene();
     if (reset) this.reset(false);
@@ -180,7 +176,7 @@ export class Drawing {
 
   /** What is selected in the scene, and how it can be moved. */
   setEditing(editing: Editing): void {
-    this.selected = editing.selected;
+    this.editing = editing;
     this.editor.set(editing);
     this.stage.requestFrame();
   }
@@ -189,8 +185,10 @@ export class Drawing {
     this.generation = state.generation;
     const figure = this.figure(state);
     this.rays.show(this.sample, figure, state, this.theme);
-    this.names.set('angles', (figure?.arcs ?? []).map(({ at, text }) => ({ text, at: new Vector3(...at), kind: 'angle', offset: 0, rank: 0 })));
-    this.names.setImportant(new Set([this.selected?.name ?? '', ...[state.selected, state.hovered].map((id) => this.objectMetBy(id))]));
+    const arcs = figure?.arcs ?? [];
+    this.names.set('angles', arcs.map(({ at, text }) => ({ text, at: new Vector3(...at), kind: 'angle', offset: 0, rank: 0 })));
+    const met = [state.selected, state.hovered].map((id) => this.objectMetBy(id));
+    this.names.setImportant(new Set([this.editing.selected?.name ?? '', ...met]));
     this.stage.canvas.classList.toggle('on-ray', state.hovered !== null);
     this.stage.requestFrame();
   }
@@ -233,6 +231,13 @@ export class Drawing {
     this.stage.dispose();
   }
 
+  /** What the camera looks at, while the camera is selected. */
+  get target(): Vector3 | null {
+    const { selected, target } = this.editing;
+    if (selected?.kind !== 'camera') return null;
+    return target ? new Vector3(...target).multiplyScalar(this.unit) : axisPoint(this.scene, this.extent);
+  }
+
   private get up(): Vector3 {
     return new Vector3(...this.scene.camera.up).normalize();
   }
@@ -244,6 +249,11 @@ export class Drawing {
     const scene = scaledScene(given, this.unit);
     this.extent = extentOf(scene, scaledNodes(nodes, this.unit));
     return scene;
+  }
+
+  /** The extent of the scene as it is, with the rays that are shown. */
+  private home(): Extent {
+    return extentOf(this.scene, scaledNodes(strongestOf(this.tree), this.unit));
   }
 
   private showScene(): void {
@@ -276,7 +286,7 @@ export class Drawing {
     const node = nodes[selected]!;
     if (node.hit === null) return null;
     const { normal, t } = node.hit;
-    const back = model.children(selected).some((child) => nodes[child]!.dir.reduce((sum, value, axis) => sum + value * normal[axis]!, 0) > 0);
+    const back = model.children(selected).some((child) => dot(nodes[child]!.dir, normal) > 0);
     return figureOf(node, back, Math.min(ANGLES * this.extent.radius, t / 2));
   }
 
@@ -318,10 +328,10 @@ export class Drawing {
   /** Says which pixel of the picture is under the pointer. */
   private aim(pixel: Pixel | null, x = 0, y = 0): void {
     this.stage.canvas.classList.toggle('on-pixel', pixel !== null);
-    this.target.hidden = pixel === null;
+    this.pixelLabel.hidden = pixel === null;
     if (pixel === null) return;
-    this.target.textContent = pixel.join(', ');
-    this.target.style.transform = `translate(${x}px, ${y}px) translate(0.7rem, -1.9rem)`;
+    this.pixelLabel.textContent = pixel.join(', ');
+    this.pixelLabel.style.transform = `translate(${x}px, ${y}px) translate(0.7rem, -1.9rem)`;
   }
 
   private rayAt(event: MouseEvent): number | null {
@@ -334,13 +344,13 @@ export class Drawing {
   private pointedAt(event: MouseEvent, hasty: boolean): { pixel?: Pixel; object?: ObjectRef } | null {
     const place = this.stage.pixelOf(event);
     const pixel = this.picksPixels ? this.plane.pixelAt(this.stage.lineOfSight(...place)) : null;
-    const object = this.picksObjects ? objectAt(this.scene, this.extent, this.objects, this.stage, ...place, hasty) : null;
+    const object = this.picksObjects ? objectAt(this, ...place, hasty) : null;
     if (pixel !== null && (object === null || pixel.distance < object.distance)) return { pixel: pixel.at };
     return object && { object: object.object };
   }
 
   private objectAt(event: MouseEvent): ObjectRef | null {
-    return objectAt(this.scene, this.extent, this.objects, this.stage, ...this.stage.pixelOf(event), false)?.object ?? null;
+    return objectAt(this, ...this.stage.pixelOf(event), false)?.object ?? null;
   }
 }
 

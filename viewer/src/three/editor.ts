@@ -1,17 +1,16 @@
 /** The selected object: drawn, and dragged with the pointer or moved with keys. */
 
 import { Group, MathUtils, Vector3 } from 'three';
-import type { Vec3, ViewScene } from '../data';
+import type { Vec3 } from '../data';
 import { type Change, type Editing, type Movement, type ObjectRef, snapped, undone } from '../editing';
 import type { Theme } from '../theme';
 import { Drag, type Grip } from './drag';
-import type { Extent } from './extent';
-import { drawnHandle, type Handle, handlesFor, outline } from './handles';
+import { axis, drawnHandle, type Handle, handlesFor, outline } from './handles';
 import { LineSet } from './line-set';
 import { MarkSet } from './marks';
-import { pick } from './picking';
+import { FINGER, pick } from './picking';
 import type { Stage } from './stage';
-import { placeOf } from './subjects';
+import { placeOf, type Places } from './subjects';
 
 /** Pixels that the pointer moves before it drags: less is a click. */
 const SLACK = 4;
@@ -33,9 +32,7 @@ export interface EditorEvents {
 }
 
 /** What the editor needs to know of the drawing around it. */
-export interface Surroundings {
-  scene: ViewScene;
-  extent: Extent;
+export interface Surroundings extends Places {
   /** By what lengths of the scene are multiplied. */
   unit: number;
   theme: Theme;
@@ -90,7 +87,7 @@ export class Editor {
 
   /** Before each frame: handles keep their size when the eye comes nearer. */
   prepare(): void {
-    const { scene, theme } = this.around();
+    const { scene, theme, target } = this.around();
     const { selected, handles } = this.editing;
     const at = this.place();
     this.handles = [];
@@ -99,12 +96,14 @@ export class Editor {
       return this.marks.set([]);
     }
     const { camera, uniforms } = this.stage;
+    const seen = { object: selected, at, scene, camera, theme };
     const distance = at.distanceTo(camera.position);
     const pixel = (2 * Math.tan(MathUtils.degToRad(camera.fov) / 2) * distance) / (camera.view?.fullHeight ?? uniforms.size.value.y);
-    if (handles !== null) this.handles = handlesFor(selected, scene, handles, at, camera, pixel, theme);
+    if (handles !== null) this.handles = handlesFor(seen, handles, pixel);
     const pulled = this.dragging ? this.pull!.drag.grip : this.hovered?.grip;
     const parts = [
-      outline(selected, scene, at, camera, theme),
+      outline(seen),
+      ...(target === null ? [] : [axis(scene.camera.eye, target.toArray(), theme)]),
       ...this.handles.map((handle) => drawnHandle(handle, pulled !== undefined && sameGrip(handle.grip, pulled))),
     ];
     this.lines.set(parts.flatMap(({ lines }) => lines));
@@ -131,15 +130,15 @@ export class Editor {
   }
 
   private place(): Vector3 | null {
-    const { scene, extent, unit } = this.around();
-    const { selected, target } = this.editing;
-    return selected && placeOf(selected, scene, extent, target && new Vector3(...target).multiplyScalar(unit));
+    const { selected } = this.editing;
+    return selected && placeOf(selected, this.around());
   }
 
   private handleAt(event: MouseEvent): Handle | null {
     const lines = this.handles.flatMap(({ lines }, id) => lines.map((line) => ({ id, ...line })));
     const { x: width, y: height } = this.stage.uniforms.size.value;
-    const found = pick(lines, ...this.stage.pixelOf(event), this.stage.projection, width, height);
+    const tolerance = event instanceof PointerEvent && event.pointerType === 'touch' ? FINGER : undefined;
+    const found = pick(lines, ...this.stage.pixelOf(event), this.stage.projection, width, height, tolerance);
     return found === null ? null : this.handles[found]!;
   }
 
@@ -224,7 +223,8 @@ export class Editor {
     const step = KEYS[event.key];
     const { selected, snap, handles } = this.editing;
     const at = this.place();
-    if (step === undefined || !event.altKey || event.ctrlKey || event.metaKey || selected === null || at === null || handles === null) return;
+    if (step === undefined || !event.altKey || event.ctrlKey || event.metaKey) return;
+    if (selected === null || at === null || handles === null) return;
     event.preventDefault();
     event.stopPropagation();
     const { unit, extent } = this.around();

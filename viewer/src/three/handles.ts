@@ -26,8 +26,22 @@ const END_ON = 0.97;
 const EDGE_ON = 0.12;
 const SEGMENTS = 64;
 
+/** An object where it is, and from where it is looked at. */
+export interface Seen {
+  object: ObjectRef;
+  at: Vector3;
+  scene: ViewScene;
+  camera: PerspectiveCamera;
+  theme: Theme;
+}
+
+interface Marked {
+  lines: DrawnLine[];
+  marks: Mark[];
+}
+
 /** Handles that can be seen and taken hold of. `pixel` is the length of one where the object is. */
-export function handlesFor(object: ObjectRef, scene: ViewScene, mode: Handles, at: Vector3, camera: PerspectiveCamera, pixel: number, theme: Theme): Handle[] {
+export function handlesFor({ object, at, scene, camera, theme }: Seen, mode: Handles, pixel: number): Handle[] {
   const sight = at.clone().sub(camera.position).normalize();
   const length = LENGTH * pixel;
   const axes = AXES.map((axis, index) => ({ axis, color: theme.axes[index]!, slant: Math.abs(sight.dot(new Vector3(...axis))) }));
@@ -40,7 +54,8 @@ export function handlesFor(object: ObjectRef, scene: ViewScene, mode: Handles, a
   if (mode === 'turn') {
     // A sphere looks the same from all sides.
     if (object.kind !== 'mesh' && !distant) return [];
-    return axes.filter(({ slant }) => slant > EDGE_ON).map(({ axis, color }) => ({ grip: { do: 'turn', axis }, color, lines: ring(at, new Vector3(...axis), length) }));
+    const open = axes.filter(({ slant }) => slant > EDGE_ON);
+    return open.map(({ axis, color }) => ({ grip: { do: 'turn', axis }, color, lines: ring(at, new Vector3(...axis), length) }));
   }
   if (object.kind === 'light' || object.kind === 'camera') return [];
   const whole: Handle = { grip: { do: 'scale', axis: null }, color: theme.accent, lines: ring(at, sight, 1.2 * length) };
@@ -48,7 +63,7 @@ export function handlesFor(object: ObjectRef, scene: ViewScene, mode: Handles, a
   return [whole, ...along.map(({ axis, color }): Handle => ({ grip: { do: 'scale', axis }, color, lines: [rod(at, axis, length)] }))];
 }
 
-export function drawnHandle({ grip, lines, color }: Handle, hovered: boolean): { lines: DrawnLine[]; marks: Mark[] } {
+export function drawnHandle({ grip, lines, color }: Handle, hovered: boolean): Marked {
   const width = hovered ? 4.5 : 2.6;
   const knob = grip.do === 'scale' && grip.axis !== null;
   return {
@@ -58,8 +73,9 @@ export function drawnHandle({ grip, lines, color }: Handle, hovered: boolean): {
 }
 
 /** The outline of a sphere as it is seen, the box around a mesh, or a ring around a mark. */
-export function outline(object: ObjectRef, scene: ViewScene, at: Vector3, camera: PerspectiveCamera, theme: Theme): { lines: DrawnLine[]; marks: Mark[] } {
-  const drawn = (lines: Line[]) => ({ lines: lines.map((line): DrawnLine => ({ ...line, color: theme.accent, width: 2.4, opacity: 0.95 })), marks: [] });
+export function outline({ object, at, scene, camera, theme }: Seen): Marked {
+  const look = { color: theme.accent, width: 2.4, opacity: 0.95 };
+  const drawn = (lines: Line[]) => ({ lines: lines.map((line): DrawnLine => ({ ...line, ...look })), marks: [] });
   if (object.kind === 'sphere') {
     const { radius } = scene.spheres[object.index]!;
     const sight = at.clone().sub(camera.position);
@@ -74,11 +90,20 @@ export function outline(object: ObjectRef, scene: ViewScene, at: Vector3, camera
   return { lines: [], marks: [{ at: at.toArray(), color: theme.accent, size, opacity: 1, shape: 'ring' }] };
 }
 
+/** From the camera's eye to what it looks at. */
+export function axis(eye: Vec3, target: Vec3, theme: Theme): Marked {
+  return {
+    lines: [{ from: eye, to: target, open: false, color: theme.accent, width: 1.4, opacity: 0.8, dashed: true }],
+    marks: [{ at: target, color: theme.accent, size: 8, opacity: 1 }],
+  };
+}
+
 function boxEdges(scene: ViewScene, index: number): Line[] {
   const { min, max } = boxOf(scene.meshes[index]!);
   const corner = (n: number): Vec3 => [n & 1 ? max.x : min.x, n & 2 ? max.y : min.y, n & 4 ? max.z : min.z];
   const all = [0, 1, 2, 3, 4, 5, 6, 7];
-  return [1, 2, 4].flatMap((bit) => all.filter((n) => (n & bit) === 0).map((n): Line => ({ from: corner(n), to: corner(n | bit), open: false })));
+  const edge = (n: number, bit: number): Line => ({ from: corner(n), to: corner(n | bit), open: false });
+  return [1, 2, 4].flatMap((bit) => all.filter((n) => (n & bit) === 0).map((n) => edge(n, bit)));
 }
 
 function rod(at: Vector3, axis: Vec3, length: number): Line {

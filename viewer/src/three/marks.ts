@@ -90,13 +90,14 @@ export class MarkSet {
     geometry.setDrawRange(0, marks.length);
     this.points.visible = marks.length > 0;
     if (marks.length === 0) return;
-    const [position, tint, look] = COLUMNS.map((name) => geometry.getAttribute(name)) as [BufferAttribute, BufferAttribute, BufferAttribute];
+    const columns = COLUMNS.map((name) => geometry.getAttribute(name)) as [BufferAttribute, BufferAttribute, BufferAttribute];
+    const [position, tint, look] = columns;
     marks.forEach(({ at, color, size, opacity, shape }, row) => {
       position.array.set(at, 3 * row);
       tint.array.set(screenColor(color), 3 * row);
       look.array.set([size, opacity, SHAPES.indexOf(shape ?? 'dot')], 3 * row);
     });
-    for (const column of [position, tint, look]) column.needsUpdate = true;
+    for (const column of columns) column.needsUpdate = true;
   }
 
   dispose(): void {

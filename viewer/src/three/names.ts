@@ -81,7 +81,8 @@ export class Names {
       const half = center >= 0 && center <= width ? w / 2 + EDGE : -Infinity;
       const x = Math.min(width - half, Math.max(half, center));
       const y = ((1 - place.y) / 2) * height + label.offset;
-      const boxes = [y, y - h, y + h].map((middle): Box => ({ left: x - w / 2, right: x + w / 2, top: middle - h / 2, bottom: middle + h / 2 }));
+      const boxAt = (middle: number): Box => ({ left: x - w / 2, right: x + w / 2, top: middle - h / 2, bottom: middle + h / 2 });
+      const boxes = [y, y - h, y + h].map(boxAt);
       const free = boxes.find((box) => !taken.some((other) => overlap(box, other))) ?? (rank(label) < 0 ? boxes[0]! : null);
       element.hidden = free === null;
       if (free === null) continue;

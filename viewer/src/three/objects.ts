@@ -1,6 +1,18 @@
 /** Spheres and meshes, shaded softly from above, with a rim: a drawing, not a rendering. */
 
-import { BufferAttribute, BufferGeometry, Color, DoubleSide, FrontSide, Group, Mesh, ShaderMaterial, Sphere, SphereGeometry, Vector3 } from 'three';
+import {
+  BufferAttribute,
+  BufferGeometry,
+  Color,
+  DoubleSide,
+  FrontSide,
+  Group,
+  Mesh,
+  ShaderMaterial,
+  Sphere,
+  SphereGeometry,
+  Vector3,
+} from 'three';
 import { displayed } from '../color';
 import type { ViewMesh, ViewScene, ViewSphere } from '../data';
 import type { Theme } from '../theme';

@@ -3,17 +3,26 @@
 import { type Matrix4, Vector3, Vector4 } from 'three';
 import type { Line } from '../lines';
 
-/** Pixels; a finger or an unsteady hand needs some. */
+/** Pixels, of an unsteady hand and of a finger. */
 const TOLERANCE = 8;
+export const FINGER = 22;
 
 export interface PickedLine extends Line {
   id: number;
 }
 
 /** The line nearest to a point, in pixels from the top left corner; among equals the last. */
-export function pick(lines: PickedLine[], x: number, y: number, projection: Matrix4, width: number, height: number): number | null {
+export function pick(
+  lines: PickedLine[],
+  x: number,
+  y: number,
+  projection: Matrix4,
+  width: number,
+  height: number,
+  tolerance = TOLERANCE,
+): number | null {
   let found: number | null = null;
-  let least = TOLERANCE;
+  let least = tolerance;
   for (const line of lines) {
     const distance = screenDistance(line, x, y, projection, width, height);
     if (distance <= least) [found, least] = [line.id, distance];

@@ -59,7 +59,7 @@ export class Rays {
 
 function drawnFigure({ normal, arcs }: Figure, theme: Theme): DrawnLine[] {
   const look = { color: theme.ink, width: 1.6, opacity: 0.9 };
-  const pieces = arcs.flatMap(({ points }) => points.slice(1).map((to, index): DrawnLine => ({ from: points[index]!, to, open: false, ...look })));
+  const pieces = arcs.flatMap(({ points }) => points.slice(1).map((to, index) => ({ from: points[index]!, to, open: false, ...look })));
   return [{ ...normal, ...look, width: 1.3, dashed: true }, ...pieces];
 }
 
@@ -111,7 +111,9 @@ class Look {
     const node = this.node(id);
     const line = node.parent === null ? null : stepLine(this.node(node.parent), node);
     const share = this.share(id);
-    return line === null ? [] : [{ ...line, color: node.band_nm === null ? this.theme.rays.inside : this.color(node), width: lineWidth(share), opacity: dim * lineOpacity(share) }];
+    if (line === null) return [];
+    const color = this.color({ ...node, kind: 'inside' });
+    return [{ ...line, color, width: lineWidth(share), opacity: dim * lineOpacity(share) }];
   }
 
   private halo(id: number, selected: boolean): DrawnLine {

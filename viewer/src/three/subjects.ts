@@ -13,8 +13,15 @@ const [LAMP, EYE] = [16, 11];
 /** Faces that can be looked through with each move of the pointer. */
 const MANY_FACES = 20_000;
 
+export interface Places {
+  scene: ViewScene;
+  extent: Extent;
+  /** What the camera looks at; `null` where that does not matter. */
+  target: Vector3 | null;
+}
+
 /** The middle of a thing; `null` if there is none such. */
-export function placeOf({ kind, index }: ObjectRef, scene: ViewScene, extent: Extent, target?: Vector3): Vector3 | null {
+export function placeOf({ kind, index }: ObjectRef, { scene, extent, target }: Places): Vector3 | null {
   switch (kind) {
     case 'sphere': {
       const sphere = scene.spheres[index];
@@ -30,12 +37,12 @@ export function placeOf({ kind, index }: ObjectRef, scene: ViewScene, extent: Ex
       return light.position ? new Vector3(...light.position) : arrowStart(light.direction!, extent);
     }
     case 'camera':
-      return index === 0 ? new Vector3(...scene.camera.eye) : (target ?? axisPoint(scene, extent));
+      return index === 0 ? new Vector3(...scene.camera.eye) : target;
   }
 }
 
 /** The place on the camera's axis beside the middle of the objects. */
-function axisPoint({ camera }: ViewScene, { things }: Extent): Vector3 {
+export function axisPoint({ camera }: ViewScene, { things }: Extent): Vector3 {
   const eye = new Vector3(...camera.eye);
   const axis = imageCenter(camera).sub(eye);
   const forward = axis.clone().normalize();
@@ -48,16 +55,24 @@ export interface Met {
   distance: number;
 }
 
+interface Drawn extends Places {
+  objects: Objects;
+  stage: Stage;
+}
+
 /** `x` and `y` in pixels. Large meshes are looked at only if this is not `hasty`. */
-export function objectAt(scene: ViewScene, extent: Extent, drawn: Objects, stage: Stage, x: number, y: number, hasty: boolean): Met | null {
-  const near = (object: ObjectRef, pixels: number) => {
-    const at = stage.onScreen(placeOf(object, scene, extent)!);
+export function objectAt(drawn: Drawn, x: number, y: number, hasty: boolean): Met | null {
+  const { scene, objects, stage } = drawn;
+  const marks: [ObjectRef, number][] = [
+    ...scene.lights.map(({ name }, index): [ObjectRef, number] => [{ kind: 'light', index, name }, LAMP]),
+    ...[0, 1].map((index): [ObjectRef, number] => [{ kind: 'camera', index, name: 'camera' }, EYE]),
+  ];
+  const mark = marks.find(([object, pixels]) => {
+    const place = placeOf(object, drawn);
+    const at = place && stage.onScreen(place);
     return at !== null && Math.hypot(at[0] - x, at[1] - y) <= pixels;
-  };
-  const lamp = scene.lights.map(({ name }, index): ObjectRef => ({ kind: 'light', index, name })).find((light) => near(light, LAMP));
-  if (lamp) return { object: lamp, distance: 0 };
-  const eye: ObjectRef = { kind: 'camera', index: 0, name: 'camera' };
-  if (near(eye, EYE)) return { object: eye, distance: 0 };
+  });
+  if (mark) return { object: mark[0], distance: 0 };
 
   const ray = stage.lineOfSight(x, y);
   let met: Met | null = null;
@@ -70,7 +85,7 @@ export function objectAt(scene: ViewScene, extent: Extent, drawn: Objects, stage
   });
   scene.meshes.forEach((mesh, index) => {
     if (hasty && mesh.faces.length > 3 * MANY_FACES) return;
-    meet({ kind: 'mesh', index, name: mesh.name }, distanceTo(drawn.meshes[index]!, boxOf(mesh), ray));
+    meet({ kind: 'mesh', index, name: mesh.name }, distanceTo(objects.meshes[index]!, boxOf(mesh), ray));
   });
   return met;
 }
