@@ -21,9 +21,9 @@ fn main() -> std::result::Result<(), Box<dyn Error>> {
         }
         println!("cargo::rerun-if-changed={}", folder.display());
         for (number, (name, path)) in files_in(&folder)?.into_iter().enumerate() {
-            let packed = out.join(format!("studio-{number}.gz"));
-            fs::write(&packed, gzip(&fs::read(path)?)?)?;
-            writeln!(list, "    ({name:?}, include_bytes!({packed:?})),")?;
+            let packed = format!("studio-{number}.gz");
+            fs::write(out.join(&packed), gzip(&fs::read(path)?)?)?;
+            writeln!(list, "    ({name:?}, include_bytes!(concat!(env!(\"OUT_DIR\"), \"/{packed}\"))),")?;
         }
     }
     fs::write(out.join("studio.rs"), format!("&[\n{list}]\n"))?;
