@@ -31,6 +31,14 @@ export interface Comparison {
   options: PictureOptions | null;
 }
 
+/** Where an object is seen: along one of its paths, or along all of them. */
+export interface ShownSighting extends Sighting {
+  object: string;
+  path: string | null;
+  /** The mask of all paths. */
+  all: Float64Array;
+}
+
 /** How an edit stands in the history. */
 export interface EditOptions {
   label: string;
@@ -80,7 +88,7 @@ export class Store {
   /** What the handles of the selected object do, and the step that they snap to. */
   readonly handles = signal<'move' | 'turn' | 'scale'>('move');
   readonly snap = signal<number | null>(null);
-  readonly sighting = signal<(Sighting & { object: string }) | null>(null);
+  readonly sighting = signal<ShownSighting | null>(null);
   readonly comparison = signal<Comparison | null>(null);
   readonly undoLabel = signal<string | null>(null);
   readonly redoLabel = signal<string | null>(null);
@@ -246,7 +254,28 @@ export class Store {
     if (object === null) return;
     this.busy.value = `Looking for ${object} in every pixel …`;
     try {
-      this.sighting.value = { ...(await this.engine.ask({ ask: 'find', object })), object };
+      const found = await this.engine.ask({ ask: 'find', object });
+      this.sighting.value = { ...found, object, path: null, all: found.mask };
+    } catch (error) {
+      this.tell(error);
+    } finally {
+      this.busy.value = null;
+    }
+  }
+
+  /** Shows the pixels of one of the paths that were found, or those of all. */
+  async findPath(path: string | null): Promise<void> {
+    const found = this.sighting.value;
+    if (found === null) return;
+    const { all } = found;
+    if (path === null) {
+      this.sighting.value = { ...found, mask: all, path };
+      return;
+    }
+    this.busy.value = 'Looking along this path in every pixel …';
+    try {
+      const mask = await this.engine.ask({ ask: 'path', path });
+      if (this.sighting.value === found) this.sighting.value = { ...found, mask, path };
     } catch (error) {
       this.tell(error);
     } finally {

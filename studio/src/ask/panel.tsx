@@ -108,7 +108,9 @@ function Find({ store, tree }: { store: Store; tree: RayTreeDocument | null }) {
         <ol class="paths" aria-label={`Ways by which ${sighting.object} is seen`}>
           {sighting.paths.slice(0, 8).map(({ path, pixels }) => (
             <li key={path}>
-              {path} <span class="quiet">{pixels.toLocaleString('en')} pixels</span>
+              <button type="button" class="plain path" aria-pressed={sighting.path === path} onClick={() => store.findPath(sighting.path === path ? null : path)}>
+                {path} <span class="quiet">{pixels.toLocaleString('en')} pixels</span>
+              </button>
             </li>
           ))}
           {sighting.paths.length === 0 && <li>Nowhere in this picture.</li>}

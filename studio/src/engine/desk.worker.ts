@@ -68,6 +68,8 @@ function answer(question: Question): Answers[Question['ask']] {
       seen.free();
       return found;
     }
+    case 'path':
+      return session!.find_path(question.path);
     case 'values':
       return session!.values(question.x, question.y, question.width, question.height);
     case 'outcome':

@@ -116,6 +116,7 @@ export type Question =
   | { ask: 'change'; change: Change }
   | { ask: 'explain'; pixel: [number, number] }
   | { ask: 'find'; object: string }
+  | { ask: 'path'; path: string }
   | { ask: 'values'; x: number; y: number; width: number; height: number }
   | { ask: 'outcome'; picture: number }
   | { ask: 'glasses' }
@@ -125,6 +126,8 @@ export interface Answers {
   change: Revision;
   explain: RayTreeDocument;
   find: Sighting;
+  /** For each pixel 1 where something is seen by this path, else 0. */
+  path: Float64Array;
   values: Float64Array;
   /** Of a finished picture. */
   outcome: { sha256: string; warnings: Finding[] };
