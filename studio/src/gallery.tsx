@@ -11,7 +11,8 @@ export function Gallery({ store, close, openFiles }: { store: Store; close(): vo
     store.open({ name, given: { builtin: name } }).catch(() => {});
     close();
   };
-  const groups = [...new Set(SCENES.map(({ name }) => name.split('/')[0]!))];
+  // What is beautiful first.
+  const groups = [...new Set(['gallery', ...SCENES.map(({ name }) => name.split('/')[0]!)])];
   return (
     <dialog ref={dialog} class="gallery" aria-labelledby="gallery-title" onClose={close} onClick={(event) => event.target === dialog.current && close()}>
       <header>
@@ -31,7 +32,7 @@ export function Gallery({ store, close, openFiles }: { store: Store; close(): vo
               <button type="button" class="card" key={name} aria-current={store.base.value?.name === name} onClick={() => choose(name)}>
                 <img src={thumbnail} alt="" loading="lazy" />
                 <b>{name.split('/')[1]}</b>
-                <span>{description}</span>
+                <span title={description}>{/^.*?[.?!](?= |$)/.exec(description)?.[0] ?? description}</span>
               </button>
             ))}
           </div>

@@ -1,8 +1,9 @@
 /** What people do in the studio, as they do it. Usage: SNELL=../target/ci/snell npx vitest run test */
 
 import { execFileSync } from 'node:child_process';
-import { readFileSync } from 'node:fs';
+import { existsSync, readdirSync, readFileSync } from 'node:fs';
 import type { Server } from 'node:http';
+import { basename, join } from 'node:path';
 import type { Browser, Page } from 'playwright-core';
 import { afterAll, beforeAll, expect, test } from 'vitest';
 import { finished, launch, open, OUT, placeOf, serve } from './page';
@@ -163,3 +164,154 @@ test('an exercise tells right from wrong', () =>
     await page.getByRole('button', { name: 'Check' }).click();
     await page.getByText('✓ Right.').waitFor();
   }));
+
+test('a driver of the course opens with its models', async () => {
+  const folder = '../../shared/data/course/2018-p4';
+  if (!existsSync(folder)) {
+    console.warn('shared/data is absent: no real driver was tried');
+    return;
+  }
+  const { driver, files } = driverIn(folder);
+  await on('#lecture/default', async (page) => {
+    await finished(page);
+    await page.getByRole('button', { name: 'File' }).click();
+    const [chooser] = await Promise.all([page.waitForEvent('filechooser'), page.getByRole('menuitem', { name: 'Open …' }).click()]);
+    await chooser.setFiles(files);
+    await page.waitForFunction((name) => window.snell.base.value?.name === name, basename(driver));
+    const hash = await finished(page);
+    expect(hash).toBe(nativeHash(driver));
+    await page.screenshot({ path: `${OUT}driver.png` });
+  });
+});
+
+test('a file that is no scene says so, and the scene before stays', () =>
+  on('#lecture/default', async (page) => {
+    const before = await finished(page);
+    await page.getByRole('button', { name: 'File' }).click();
+    const [chooser] = await Promise.all([page.waitForEvent('filechooser'), page.getByRole('menuitem', { name: 'Open …' }).click()]);
+    await chooser.setFiles([{ name: 'broken.toml', mimeType: 'text/plain', buffer: Buffer.from('snell = 1\n[render]\nintegrator = "whitted"\nsize = [0, "a"]\n') }]);
+    await page.getByRole('alert').waitFor();
+    expect(await page.evaluate(() => [window.snell.base.value!.name, window.snell.outcome.value!.sha256])).toEqual(['lecture/default', before]);
+  }));
+
+test('a hundred thousand spheres, an empty scene and a huge picture do not freeze the page', () =>
+  on('#lecture/default', async (page) => {
+    await finished(page);
+    const opened = async (body: string) =>
+      page.evaluate(async (body) => {
+        const text = new TextEncoder().encode(body);
+        await window.snell.open({ name: 'x.toml', given: { name: 'x.toml', text, files: [] } }).catch(() => {});
+        return [window.snell.refused.value.length, window.snell.revision.value!.size];
+      }, body);
+    const head = (size: string) => `snell = 1\n[render]\nintegrator = "whitted"\nsize = ${size}\n[camera]\neye = [0, 0, 5]\nlook_at = [0, 0, 0]\nup = [0, 1, 0]\nfov = 40\n`;
+    expect(await opened(head('[32, 32]'))).toEqual([0, [32, 32]]);
+    await finished(page);
+    // More than the memory of an instance: refused, or rendered for ever and stopped by the next scene; never a dead page.
+    await opened(head('[60000, 60000]'));
+    expect(await opened(head('[16, 16]'))).toEqual([0, [16, 16]]);
+    await finished(page);
+  }));
+
+test('two models of light are compared', () =>
+  on('#lecture/default', async (page) => {
+    const hash = await finished(page);
+    await page.getByRole('button', { name: 'Compare' }).click();
+    await page.getByRole('menuitem', { name: /real optics/ }).click();
+    const slider = page.getByRole('slider', { name: /Compare: whitted/ });
+    await slider.focus();
+    const before = Number(await slider.getAttribute('aria-valuenow'));
+    await page.keyboard.press('ArrowRight');
+    expect(Number(await slider.getAttribute('aria-valuenow'))).toBe(before + 2);
+    await page.waitForFunction(() => {
+      const [one, other] = [window.snell.surface.canvas, window.snell.comparison.value!.surface.canvas];
+      return other.width === one.width && other.toDataURL() !== one.toDataURL();
+    });
+    await page.screenshot({ path: `${OUT}compare.png` });
+    await page.getByRole('button', { name: 'Stop comparing' }).click();
+    expect(await finished(page)).toBe(hash);
+  }));
+
+test('where green is seen is found, and by which path', () =>
+  on('#study/quarter-view', async (page) => {
+    await finished(page);
+    await page.getByRole('button', { name: 'green', exact: true }).click();
+    const first = page.locator('.paths button').first();
+    await first.waitFor({ timeout: 60_000 });
+    const share = () => page.evaluate(() => window.snell.sighting.value!.mask.reduce((sum, value) => sum + Number(value > 0), 0));
+    const all = await share();
+    await first.click();
+    await page.waitForFunction(() => window.snell.sighting.value!.path !== null, undefined, { timeout: 60_000 });
+    const one = await share();
+    expect(one).toBeGreaterThan(0);
+    expect(one).toBeLessThan(all);
+    const told = Number((await first.locator('.quiet').innerText()).replace(/\D/g, ''));
+    expect(one).toBe(told);
+    await page.screenshot({ path: `${OUT}find.png` });
+  }));
+
+test('all of it works by keyboard alone', () =>
+  on('#lecture/default', async (page) => {
+    await finished(page);
+    const focused = () => page.evaluate(() => document.activeElement?.className ?? '');
+    for (let count = 0; count < 30 && (await focused()) !== 'picture'; count++) await page.keyboard.press('Tab');
+    expect(await focused()).toBe('picture');
+    await page.keyboard.press('ArrowRight');
+    await page.waitForFunction(() => window.snell.pinned.value !== null && window.snell.tree.value !== null);
+    await page.keyboard.press('Shift+ArrowDown');
+    await page.waitForFunction(() => window.snell.pinned.value?.[1] === 266);
+    await page.keyboard.press('+');
+    await page.keyboard.press('0');
+    await page.keyboard.press('Escape');
+    await page.waitForFunction(() => window.snell.pinned.value === null);
+    await page.getByRole('button', { name: 'Learn' }).focus();
+    await page.keyboard.press('Enter');
+    await page.keyboard.press('ArrowDown');
+    await page.keyboard.press('ArrowUp');
+    await page.keyboard.press('Enter');
+    await page.getByRole('heading', { name: 'Four spheres' }).waitFor();
+  }));
+
+for (const colorScheme of ['light', 'dark'] as const) {
+  test(`axe finds nothing on a ${colorScheme} page, whatever is open`, () =>
+    on(
+      '#lecture/default',
+      async (page) => {
+        await finished(page);
+        await page.addScriptTag({ content: readFileSync('node_modules/axe-core/axe.min.js', 'utf8') });
+        const check = async () => {
+          const { violations } = await page.evaluate(() => (window as unknown as { axe: typeof import('axe-core') }).axe.run());
+          expect(violations.map(({ id, nodes }) => `${id}: ${nodes.map(({ html }) => html).join(' ').slice(0, 300)}`)).toEqual([]);
+        };
+        await check();
+        const at = await placeOf(page, [300, 300]);
+        await page.mouse.click(at.x, at.y);
+        await page.getByText('seen through').first().waitFor();
+        await check();
+        for (const tab of ['Scene', 'Source']) {
+          await page.getByRole('tab', { name: tab }).click();
+          await page.waitForTimeout(500);
+          await check();
+        }
+        await page.getByRole('button', { name: 'lecture/default' }).click();
+        await check();
+      },
+      { colorScheme },
+    ));
+}
+
+test('a browser without vectors is told what is missing', async () => {
+  const page = await browser.newPage();
+  await page.addInitScript(() => (WebAssembly.validate = () => false));
+  await page.goto(url);
+  await page.getByText('SIMD').waitFor();
+  await page.close();
+});
+
+test('a host that does not know what WebAssembly is serves it all the same', async () => {
+  const other = await serve({ '.html': 'text/html', '.js': 'text/javascript', '.css': 'text/css' });
+  const { page, trouble } = await open(browser, `${other.url}#lecture/default`);
+  await finished(page);
+  expect(trouble).toEqual([]);
+  await page.context().close();
+  other.server.close();
+});
