@@ -5,7 +5,6 @@ import list from '../../target/studio/scenes.json';
 export interface BuiltinScene {
   name: string;
   description: string;
-  size: [number, number];
   /** Of the film that `snell render` makes of it; `null` where that would have taken too long. */
   film_sha256: string | null;
   /** Address of its picture. */
