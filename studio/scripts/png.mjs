@@ -1,4 +1,4 @@
-// Small pictures as PNG with a palette, which takes a third of what true colour does.
+// Small pictures as PNG with a palette, which takes less than true colour does.
 
 import { crc32, deflateSync } from 'node:zlib';
 

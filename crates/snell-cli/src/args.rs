@@ -334,7 +334,7 @@ Examples:
   snell studio scene.toml      this scene, and again whenever it or one of its models is saved
   snell studio gallery/prism
 
-It is served to this machine alone, until ^C. The page works without it once it is loaded, and nothing leaves the machine.")]
+It is served to this machine alone, until ^C.")]
 pub struct StudioArgs {
     /// Scene file, driver file, or built-in name
     #[arg(value_parser = SceneName, hide_possible_values = true)]

@@ -20,7 +20,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// Longer than anything takes, however busy the machine is.
-const PATIENCE: Duration = Duration::from_secs(60);
+const PATIENCE: Duration = Duration::from_mins(1);
 
 /// A folder with the pages of a studio in `pages`, a file beside that, and a scene with a model.
 fn workplace() -> tempfile::TempDir {
@@ -31,7 +31,7 @@ fn workplace() -> tempfile::TempDir {
     fs::create_dir_all(at.join("models")).unwrap();
     fs::write(at.join("pages/index.html"), "<!doctype html><title>studio</title>").unwrap();
     fs::write(at.join("pages/assets/a b.mjs"), "export {}").unwrap();
-    fs::write(at.join("pages/snell.wasm"), [0; 300_000]).unwrap();
+    fs::write(at.join("pages/snell.wasm"), vec![0; 300_000]).unwrap();
     fs::write(at.join("secret.txt"), "secret").unwrap();
     fs::write(at.join("models/tetra.obj"), TETRA).unwrap();
     fs::write(at.join("scenes/tetra.toml"), SCENE).unwrap();
@@ -88,8 +88,9 @@ impl Studio {
             .unwrap();
         let mut address = String::new();
         BufReader::new(child.stdout.take().unwrap()).read_line(&mut address).unwrap();
-        let rest = address.strip_prefix("http://127.0.0.1:").unwrap_or_else(|| panic!("no address: {address:?}"));
-        let port = rest.split('/').next().unwrap().parse().unwrap();
+        let rest = address.strip_prefix("http://127.0.0.1:").unwrap_or_default();
+        let port = rest.split('/').next().unwrap().parse().unwrap_or(0);
+        assert!(port > 0, "no address: {address:?}");
         Self { child, port, address: address.trim().to_owned() }
     }
 

@@ -132,9 +132,10 @@ fn parse(bytes: &[u8]) -> std::result::Result<Option<Request>, Status> {
     let mut request = httparse::Request::new(&mut headers);
     match request.parse(bytes) {
         Ok(httparse::Status::Complete(length)) if length <= MOST_HEADER_BYTES => {}
-        Ok(httparse::Status::Complete(_)) => return Err(Status::HeadersTooLarge),
         Ok(httparse::Status::Partial) => return Ok(None),
-        Err(httparse::Error::TooManyHeaders) => return Err(Status::HeadersTooLarge),
+        Ok(httparse::Status::Complete(_)) | Err(httparse::Error::TooManyHeaders) => {
+            return Err(Status::HeadersTooLarge);
+        }
         Err(_) => return Err(Status::BadRequest),
     }
     let (Some(method), Some(target)) = (request.method, request.path) else { return Err(Status::BadRequest) };

@@ -40,7 +40,7 @@ pub fn run(args: &StudioArgs) -> Outcome {
     if !args.no_open && open::that_detached(&address).is_err() {
         tell("no browser could be opened: open the address in one");
     }
-    serve(&listener, Arc::new(Studio { pages, live, port }))
+    serve(&listener, &Arc::new(Studio { pages, live, port }))
 }
 
 fn no_port(port: u16, error: &std::io::Error) -> Failure {
@@ -63,7 +63,7 @@ struct Studio {
 }
 
 /// A thread for each connection, so that none waits for another.
-fn serve(listener: &TcpListener, studio: Arc<Studio>) -> Outcome {
+fn serve(listener: &TcpListener, studio: &Arc<Studio>) -> Outcome {
     loop {
         // A client that has gone before it was greeted, or no more files for this program: neither lasts.
         let Ok((stream, _)) = listener.accept() else {
@@ -71,10 +71,10 @@ fn serve(listener: &TcpListener, studio: Arc<Studio>) -> Outcome {
             continue;
         };
         // One is held here, and one by the thread.
-        if Arc::strong_count(&studio) > MOST_CONNECTIONS {
+        if Arc::strong_count(studio) > MOST_CONNECTIONS {
             continue;
         }
-        let studio = Arc::clone(&studio);
+        let studio = Arc::clone(studio);
         // Without a thread the connection is closed, and the client may try again.
         let _ = thread::Builder::new().spawn(move || studio.talk(stream));
     }

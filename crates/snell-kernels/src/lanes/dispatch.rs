@@ -79,7 +79,7 @@ type Two = super::x86::Sse2;
 type Two = super::ArrayLanes<2>;
 
 /// Does some work with so many lanes, 1, 2, 4 or 8, and with the best of these instructions; another number counts as 1. So
-/// do 4 and 8 in WASM: they would be half of what is downloaded, and slower than 2.
+/// do 4 and 8 in WASM, which has no instructions for them: they would only be downloaded.
 pub fn dispatch<K: Kernel>(lanes: usize, instructions: Instructions, kernel: K) -> K::Output {
     #[cfg(not(target_arch = "x86_64"))]
     let Instructions { .. } = instructions;
