@@ -1,7 +1,7 @@
 # Everything goes through these. What they need is installed without asking; what cannot be is named.
 
 .DEFAULT_GOAL := help
-.PHONY: help demo studio test soak fuzz bench bench-counts bench-peers schemas pictures notebooks clean
+.PHONY: help demo studio test soak fuzz bench bench-studio bench-counts bench-peers schemas pictures notebooks clean
 
 help: ## This list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -23,6 +23,9 @@ fuzz: ## Fuzz every reader for a minute each (SECONDS_EACH=600 make fuzz for lon
 
 bench: ## Time kernels, trees, rays and pictures (BASELINE=name saves, AGAINST=name compares)
 	@scripts/bench.sh
+
+bench-studio: ## How fast the studio is, in Chromium: first picture, dragging, memory, sizes
+	@scripts/bench-studio.sh
 
 bench-counts: ## Count instructions under valgrind (BASELINE=1 saves, ONLY=gallery counts less)
 	@scripts/bench-counts.sh

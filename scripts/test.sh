@@ -60,6 +60,12 @@ browser_module() {
     SNELL=$PWD/target/ci/snell node --test tests/studio/
 }
 
+# The whole page, as people use it.
+studio() {
+    build_studio --quick
+    (cd studio && SNELL=$PWD/../target/ci/snell npm test --silent)
+}
+
 viewer() {
     need_viewer_packages
     (cd viewer && SNELL=$PWD/../target/ci/snell npm test --silent)
@@ -81,6 +87,7 @@ stage 'the library for ARM' cargo check --locked --quiet --package snell --targe
 stage 'the kernels without the standard library' kernels_alone
 stage 'the same bits in WASM' same_bits_in_wasm
 stage 'the module for browsers' browser_module
+stage 'the studio, in Chromium' studio
 
 printf '\n── all passed\n'
 printf '%s\n' "${times[@]}"

@@ -56,7 +56,6 @@ function builtin(name: string): Base {
 /** Shows what `snell studio` serves, each time that it changes. Returns what ends that. */
 export function follow(store: Store, url: string): () => void {
   const source = new EventSource(url);
-  let base: Base | null = null;
   source.onmessage = ({ data }: MessageEvent<string>) => {
     const told = JSON.parse(data) as { error: string } | { name: string; text: string; files: [string, string][] };
     if ('error' in told) {
@@ -64,7 +63,8 @@ export function follow(store: Store, url: string): () => void {
       return;
     }
     const files = told.files.map(([name, bytes]): [string, Uint8Array] => [name, fromBase64(bytes)]);
-    base = { name: told.name, given: { name: told.name, text: fromBase64(told.text), files } };
+    const isBuiltin = SCENES.some((scene) => scene.name === told.name);
+    const base = isBuiltin ? builtin(told.name) : { name: told.name, given: { name: told.name, text: fromBase64(told.text), files } };
     store.open(base, { label: `read ${told.name}` }).catch(() => {});
   };
   return () => source.close();
