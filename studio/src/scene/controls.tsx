@@ -125,11 +125,11 @@ export function VectorField(of: Of & { value: readonly number[]; names?: string[
 type Rgb = number | readonly number[];
 
 /** A colour, linear; the numbers may be above 1. */
-export function ColorField(of: Of & { value: Rgb; transfer: 'linear' | 'srgb' }) {
+export function ColorField(of: Of & { value: Rgb; transfer: 'linear' | 'srgb'; more?: Edit[] }) {
   const id = useId();
   const edit = useEdit(of);
   const channels: Vec3 = typeof of.value === 'number' ? [of.value, of.value, of.value] : ([...of.value] as Vec3);
-  const write = (color: Vec3) => edit.set(color.every((value) => value === color[0]) ? numberText(color[0]) : vectorText(color));
+  const write = (color: Vec3) => edit.set(color.every((value) => value === color[0]) ? numberText(color[0]) : vectorText(color), ...(of.more ?? []));
   return (
     <div class="field color" role="group" aria-label={of.label}>
       <label for={id}>{of.label}</label>

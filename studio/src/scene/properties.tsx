@@ -144,7 +144,7 @@ function MaterialValues({ store, name, scene }: { store: Store; name: string; sc
       <Slider store={store} of={`${key}.spow`} label="Sharpness" value={material.spow ?? 16} min={1} max={256} step={1} />
       <GraySlider store={store} of={`${key}.kr`} label="Mirror" value={material.kr ?? 0} />
       <GraySlider store={store} of={`${key}.ko`} label="Opacity" value={material.ko ?? 1} />
-      {optics && clear && (
+      {optics && clear && material.sigma_a == null && (
         <>
           <ColorField
             store={store}
@@ -152,16 +152,12 @@ function MaterialValues({ store, name, scene }: { store: Store; name: string; sc
             label="Tint"
             value={material.attenuation_color ?? 1}
             transfer={transfer}
+            // One means nothing without the other.
+            more={material.attenuation_distance == null ? [[`${key}.attenuation_distance`, '1']] : []}
           />
-          <Slider
-            store={store}
-            of={`${key}.attenuation_distance`}
-            label="at thickness"
-            value={material.attenuation_distance ?? 1}
-            min={0.01}
-            max={Math.max(10, 2 * (material.attenuation_distance ?? 1))}
-            instead={material.attenuation_color == null ? [] : []}
-          />
+          {material.attenuation_distance != null && (
+            <NumberField store={store} of={`${key}.attenuation_distance`} label="at thickness" value={material.attenuation_distance} min={0} />
+          )}
         </>
       )}
     </section>
