@@ -157,7 +157,7 @@ export class Viewer {
       this.showHeader();
     }
     const shown = tree === this.panel.document;
-    const model = shown ? this.panel.model : new TreeModel(tree!.samples[0]!.nodes);
+    const model = shown ? this.panel.model : tree && new TreeModel(tree.samples[0]!.nodes);
     const before = keepSelection && this.model && this.state.selected !== null ? this.model.way(this.state.selected) : null;
     const kept = before && model ? model.find(before) : null;
     this.draw(tree, model, kept ?? (shown ? this.panel.selected : null));
