@@ -268,7 +268,10 @@ export class Viewer {
     Object.assign(this.state, { selected, hovered: null, generation: this.panel.model === model ? this.panel.generation : Infinity });
     if (this.panel.model === model && this.panel.selected !== selected) this.panel.select(selected);
     this.update();
-    if (hovered !== null) this.tell('hover', null);
+    if (hovered !== null) {
+      this.panel.hover(null);
+      this.tell('hover', null);
+    }
     if (selected !== before) this.tell('select', selected);
   }
 
