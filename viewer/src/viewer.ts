@@ -159,7 +159,7 @@ export class Viewer {
       this.showHeader();
     }
     const shown = tree === this.panel.document;
-    const model = shown ? this.panel.model : new TreeModel(tree!.samples[0]!.nodes);
+    const model = shown ? this.panel.model : tree && new TreeModel(tree.samples[0]!.nodes);
     const before = keepSelection && this.model && this.state.selected !== null ? this.model.way(this.state.selected) : null;
     const kept = before && model ? model.find(before) : null;
     this.draw(tree, model, kept ?? (shown ? this.panel.selected : null));
@@ -270,7 +270,10 @@ export class Viewer {
     Object.assign(this.state, { selected, hovered: null, generation: this.panel.model === model ? this.panel.generation : Infinity });
     if (this.panel.model === model && this.panel.selected !== selected) this.panel.select(selected);
     this.update();
-    if (hovered !== null) this.tell('hover', null);
+    if (hovered !== null) {
+      this.panel.hover(null);
+      this.tell('hover', null);
+    }
     if (selected !== before) this.tell('select', selected);
   }
 

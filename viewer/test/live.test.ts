@@ -68,6 +68,45 @@ describe('another scene', () => {
     await page.close();
   });
 
+  test('moves the eye where it looks through the camera', async () => {
+    const { scene } = glass();
+    const shift = ([x, y, z]: [number, number, number]): [number, number, number] => [x + 1, y + 0.5, z];
+    const { eye, corners, up } = scene.camera;
+    const camera = { eye: shift(eye), corners: corners.map(shift) as typeof corners, up };
+    const { page } = await open(browser, 'live-camera', { scene });
+    const look = async () => {
+      await page.evaluate(() => window.viewer.lookThroughCamera());
+      return shot(page);
+    };
+    await page.getByLabel('Names').uncheck();
+    const before = await look();
+    await page.evaluate((scene) => window.viewer.setScene(scene), { ...scene, camera });
+    const followed = await shot(page);
+    expect(followed.equals(before)).toBe(false);
+    expect((await look()).equals(followed)).toBe(true);
+    await page.close();
+  });
+
+  test('of another size is seen as well as the first one when it is reset', async () => {
+    const { scene } = glass();
+    const grown = ([x, y, z]: [number, number, number]): [number, number, number] => [x * 4096, y * 4096, z * 4096];
+    const { corners } = scene.camera;
+    const huge: ViewScene = {
+      ...scene,
+      spheres: scene.spheres.map((sphere) => ({ ...sphere, center: grown(sphere.center), radius: 4096 * sphere.radius })),
+      meshes: scene.meshes.map((mesh) => ({ ...mesh, vertices: [...mesh.vertices].map((x) => 4096 * x) })),
+      camera: { ...scene.camera, eye: grown(scene.camera.eye), corners: corners.map(grown) as typeof corners },
+      lights: scene.lights.map((light) => ({ ...light, position: light.position && grown(light.position) })),
+    };
+    const { page } = await open(browser, 'live-huge', { scene });
+    await page.getByLabel('Names').uncheck();
+    const before = await shot(page);
+    await page.evaluate((scene) => window.viewer.setScene(scene, { reset: true }), huge);
+    // Powers of two lose no digit: it is the same drawing.
+    expect((await shot(page)).equals(before)).toBe(true);
+    await page.close();
+  });
+
   test('that is wrong is refused, and the old one stays', async () => {
     const { scene } = glass();
     const { page } = await open(browser, 'live-wrong', { scene });
@@ -224,6 +263,10 @@ describe('rays under the pointer', () => {
     await page.evaluate(() => window.viewer.setTree((window as never as { pinned: never }).pinned));
     expect(await page.evaluate(() => window.viewer.selected)).toBe(4);
     expect((await shot(page)).equals(pinned)).toBe(true);
+    // Beside all pixels, no rays are drawn.
+    await page.evaluate(() => window.viewer.setTree(null, { panel: false }));
+    expect((await shot(page)).equals(pinned)).toBe(false);
+    expect(await page.getByRole('treeitem', { selected: true }).count()).toBe(1);
     // Rows are about their own rays, whatever is drawn.
     await page.evaluate((tree) => window.viewer.setTree(tree, { panel: false }), hovered);
     await page.getByRole('treeitem').nth(3).click();

@@ -64,6 +64,8 @@ describe('the player', () => {
   test('steps through the generations, in the tree and in the drawing', async () => {
     const { page, trouble } = await open(browser, 'player-steps', glass());
     const { nodes } = glass().tree.samples[0]!;
+    await page.mouse.move(0, 0);
+    await settled(page);
     const whole = await page.locator('.stage').screenshot();
     const [, end] = await swatches(page);
     expect((await swatches(page))[0]).toBe(end);

@@ -108,8 +108,9 @@ export class ImagePlane {
 
   /** `size` is that of the picture itself; the image may be a smaller copy, or a canvas that changes. */
   setPicture(image: Picture | null, size: Pixel | null): void {
-    this.dropTexture();
     this.size = size;
+    if (image !== null && image === this.texture?.image) return this.pictureChanged();
+    this.dropTexture();
     if (image !== null) {
       const still = image instanceof ImageBitmap;
       this.texture = new Texture(image);

@@ -71,7 +71,7 @@ type Drawn = Mesh<BufferGeometry, ShaderMaterial>;
 
 export class Objects {
   readonly group = new Group();
-  readonly spheres: Drawn[] = [];
+  private readonly spheres: Drawn[] = [];
   meshes: Drawn[] = [];
   private readonly fine = new SphereGeometry(1, 96, 64);
   /** Many spheres are small ones. */

@@ -11,7 +11,7 @@ import { imageCenter } from './viewpoints';
 /** Pixels around the mark of a lamp, and of the camera's eye. */
 const [LAMP, EYE] = [16, 11];
 /** Faces that can be looked through with each move of the pointer. */
-const MANY_FACES = 20_000;
+const MANY_FACES = 5000;
 
 export interface Places {
   scene: ViewScene;
