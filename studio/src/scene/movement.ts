@@ -21,10 +21,8 @@ type Step = { move: Vec3 } | { rotate: { axis: Vec3; degrees: number } } | { sca
 function move(object: SceneObject, by: Vec3): Edit[] {
   if (by.every((value) => value === 0)) return [];
   const { key } = object;
-  if (object.kind === 'camera') {
-    const { eye, look_at } = object.data;
-    return [[`${key}.eye`, vectorText(sum(eye as Vec3, by))], [`${key}.look_at`, vectorText(sum(look_at as Vec3, by))]];
-  }
+  if (object.kind === 'camera') return [[`${key}.eye`, vectorText(sum(object.data.eye as Vec3, by))]];
+  if (object.kind === 'target') return [[`${key}.look_at`, vectorText(sum(object.data.look_at as Vec3, by))]];
   if (object.kind === 'light') {
     return object.data.position ? [[`${key}.position`, vectorText(sum(object.data.position as Vec3, by))]] : [];
   }
@@ -46,14 +44,14 @@ function move(object: SceneObject, by: Vec3): Edit[] {
 }
 
 function turn(object: SceneObject, axis: Vec3, degrees: number, center: Vec3): Edit[] {
-  if (degrees === 0 || object.kind === 'camera' || object.kind === 'light') return [];
+  if (degrees === 0 || !isShape(object)) return [];
   // A sphere looks the same from all sides, unless it carries a picture.
   return [placed(object, joined(stepsOf(object), about(center, { rotate: { axis, degrees } })))];
 }
 
 function scale(object: SceneObject, by: number | Vec3, center: Vec3): Edit[] {
   const all = typeof by === 'number' ? by : null;
-  if (all === 1 || object.kind === 'camera' || object.kind === 'light') return [];
+  if (all === 1 || !isShape(object)) return [];
   const { key } = object;
   if (all !== null && stepsOf(object).length === 0) {
     switch (object.kind) {
@@ -70,6 +68,10 @@ function scale(object: SceneObject, by: number | Vec3, center: Vec3): Edit[] {
   }
   const factors: Vec3 = typeof by === 'number' ? [by, by, by] : by;
   return [placed(object, joined(stepsOf(object), about(center, { scale: factors })))];
+}
+
+function isShape(object: SceneObject): object is Exclude<SceneObject, { kind: 'camera' | 'target' | 'light' }> {
+  return object.kind !== 'camera' && object.kind !== 'target' && object.kind !== 'light';
 }
 
 function stepsOf(object: SceneObject): Step[] {

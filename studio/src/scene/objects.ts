@@ -13,21 +13,23 @@ type Elements = { [K in ShapeKind]: NonNullable<SceneDocument[K]>[number] };
 export type SceneObject =
   | { [K in ShapeKind]: { kind: K; name: string; key: string; data: Elements[K] } }[ShapeKind]
   | { kind: 'light'; name: string; key: string; data: NonNullable<SceneDocument['light']>[number] }
-  | { kind: 'camera'; name: string; key: 'camera'; data: SceneDocument['camera'] };
+  /** Its eye, and the point that it looks at. */
+  | { kind: 'camera' | 'target'; name: string; key: 'camera'; data: SceneDocument['camera'] };
 
 /** Everything, in the order of the file; names are those that the engine uses. */
 export function objectsOf(scene: SceneDocument): SceneObject[] {
-  const shapes = SHAPES.flatMap((kind) =>
-    (scene[kind] ?? []).map((data, index) => ({ kind, name: data.name ?? `${kind} ${index + 1}`, key: `${kind}.${index + 1}`, data })),
-  );
-  const lights = (scene.light ?? []).map((data, index) => ({
-    kind: 'light',
-    name: data.name ?? `light ${index + 1}`,
-    key: `light.${index + 1}`,
-    data,
-  }));
+  const shapes = SHAPES.flatMap((kind) => elements(kind, scene[kind]));
   const camera = { kind: 'camera', name: 'camera', key: 'camera', data: scene.camera };
-  return [...shapes, ...lights, camera] as SceneObject[];
+  return [...shapes, ...elements('light', scene.light), camera] as SceneObject[];
+}
+
+function elements(kind: string, list: { name?: string | null }[] = []) {
+  return list.map((data, index) => {
+    // A number is looked for among the names first: something may be called 2 and not be the second.
+    const isFirst = data.name != null && list.findIndex(({ name }) => name === data.name) === index;
+    const key = `${kind}.${isFirst ? quoted(data.name!) : index + 1}`;
+    return { kind, name: data.name ?? `${kind} ${index + 1}`, key, data };
+  });
 }
 
 /** A key of TOML: quoted where it must be. */
@@ -54,6 +56,7 @@ export function vectorText(values: readonly number[]): string {
 /** The middle of an object as it is seen, and how far it reaches; nothing for what has no place. */
 export function placeOf(object: SceneObject, view: ViewScene): { center: Vec3; radius: number } | null {
   if (object.kind === 'camera') return { center: object.data.eye as Vec3, radius: 0 };
+  if (object.kind === 'target') return { center: object.data.look_at as Vec3, radius: 0 };
   if (object.kind === 'light') {
     const light = view.lights.find(({ name }) => name === object.name);
     return light?.position ? { center: light.position, radius: 0 } : null;

@@ -28,7 +28,7 @@ export function Properties({ store }: { store: Store }) {
 }
 
 const MARKS: Record<SceneObject['kind'], string> = {
-  sphere: '●', mesh: '◆', plane: '▱', box: '■', disc: '⬬', lathe: '⧗', light: '✺', camera: '◉',
+  sphere: '●', mesh: '◆', plane: '▱', box: '■', disc: '⬬', lathe: '⧗', light: '✺', camera: '◉', target: '⌖',
 };
 
 /** More than these are not shown at once. */

@@ -40,7 +40,8 @@ export class Space {
       effect(() => this.viewer.setTree(store.tree.value, { panel: store.pinned.value !== null })),
       effect(() => {
         const selected = this.refOf(store.selected.value);
-        this.viewer.setObjects({ selected, handles: selected && store.handles.value, snap: store.snap.value });
+        const target = store.revision.value!.scene.camera.look_at as Vec3;
+        this.viewer.setObjects({ selected, handles: selected && store.handles.value, snap: store.snap.value, target });
       }),
     );
   }
@@ -71,9 +72,11 @@ export class Space {
 
   private move(movement: Movement): void {
     const { store } = this;
-    if (this.drag?.object.name !== movement.object.name) {
+    if (this.drag === null) {
       const { scene, view } = store.revision.value!;
-      const object = objectsOf(scene).find(({ name }) => name === movement.object.name);
+      const { kind, index, name } = movement.object;
+      const chosen = objectsOf(scene).find((one) => one.name === name && (one.kind === 'camera') === (kind === 'camera'));
+      const object: SceneObject | undefined = chosen?.kind === 'camera' && index === 1 ? { ...chosen, kind: 'target' } : chosen;
       const place = object && placeOf(object, view);
       if (!place) return;
       this.drag = { object, ...place, group: `space ${object.key} ${performance.now()}` };
