@@ -84,6 +84,8 @@ export class Store {
   readonly pinned = signal<Pixel | null>(null);
   /** Of the pixel that is pinned, or else under the pointer. */
   readonly tree = signal<RayTreeDocument | null>(null);
+  /** Where the ray of the tree ends that is pointed at, if it meets something. */
+  readonly branch = signal<[number, number, number] | null>(null);
   readonly selectedName = signal<string | null>(null);
   /** What the handles of the selected object do, and the step that they snap to. */
   readonly handles = signal<'move' | 'turn' | 'scale'>('move');

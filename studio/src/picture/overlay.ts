@@ -1,6 +1,7 @@
 /** What lies over the picture: the pixel that is asked for, its value and those around it, and where an object is seen. */
 
 import type { Pixel, Store } from '../store';
+import { project } from './drag';
 import type { Zoom } from './zoom';
 
 /** Pixels of the screen for each of the picture's, from which on numbers fit into it. */
@@ -48,6 +49,7 @@ export class Overlay {
       cross(paint, zoom, pinned.value, width, height);
       frame(paint, zoom, pinned.value, '#fff', 2);
     }
+    this.drawBranch(paint, zoom);
     this.showLabel(zoom, hovered.value ?? pinned.value);
   }
 
@@ -110,6 +112,20 @@ export class Overlay {
       // The picture has gone on meanwhile: the next frame asks again.
       () => (this.wanted = ''),
     );
+  }
+
+  /** Where the ray that is pointed at meets something, as the camera would see that place. */
+  private drawBranch(paint: CanvasRenderingContext2D, { scale, x, y }: Zoom): void {
+    const { branch, revision } = this.store;
+    const at = branch.value && revision.value && project(revision.value.view.camera, revision.value.size, branch.value);
+    if (!at) return;
+    for (const [color, width] of [['rgb(0 0 0 / 65%)', 4], ['#ffd66b', 2]] as const) {
+      paint.strokeStyle = color;
+      paint.lineWidth = width;
+      paint.beginPath();
+      paint.arc(x + at[0] * scale, y + at[1] * scale, 8, 0, 2 * Math.PI);
+      paint.stroke();
+    }
   }
 
   private showLabel({ scale, x, y }: Zoom, pixel: Pixel | null): void {

@@ -62,7 +62,7 @@ export function PictureView({ store }: { store: Store }) {
   useSignalEffect(() => {
     const { scale, x, y } = zoom.value;
     store.surface.canvas.style.transform = `translate(${x}px, ${y}px) scale(${scale})`;
-    void [store.frame.value, store.asked.value, store.pinned.value, store.sighting.value, store.selected.value];
+    void [store.frame.value, store.asked.value, store.pinned.value, store.sighting.value, store.branch.value];
     overlay.current?.draw(zoom.value);
   });
 

@@ -22,6 +22,8 @@ export class Space {
     this.ends.push(
       this.viewer.on('pixel', (x, y) => store.pin([x, y])),
       this.viewer.on('object', (object) => store.select(object?.name ?? null)),
+      this.viewer.on('hover', (id) => this.point(id ?? this.viewer.selected)),
+      this.viewer.on('select', (id) => this.point(id)),
       this.viewer.on('move', (movement) => this.move(movement)),
       this.viewer.on('moved', () => this.moved()),
     );
@@ -83,6 +85,13 @@ export class Space {
     }
     const { object, center, radius, group } = this.drag;
     store.edit(editsFor(object, rounded(movement, radius || Math.hypot(...center)), center), { label: `${movement.kind} ${object.name}`, group });
+  }
+
+  private point(id: number | null): void {
+    const { value: tree } = this.store.tree;
+    // Of several samples it is not known which one is shown.
+    const node = id === null || tree?.samples.length !== 1 ? undefined : tree.samples[0]!.nodes[id];
+    this.store.branch.value = node?.hit?.point ?? null;
   }
 
   private moved(): void {
