@@ -90,11 +90,12 @@ for (const [name, size, options] of [
     });
 }
 
-test("every built-in scene loads as a file, and is saved as the same scene", () => {
+test("every built-in scene loads as a file, and stays the text that it is", () => {
     for (const { name, text } of JSON.parse(Session.scenes())) {
         const session = Session.load(`${name}.toml`, bytes(text));
+        assert.equal(session.text, text);
         const [width, height] = session.size;
-        const again = Session.load("saved.toml", bytes(session.save()));
+        const again = Session.load("again.toml", bytes(session.text));
         const crop = { x: Math.floor(width / 2), y: Math.floor(height / 2), width: 4, height: 4 };
         const values = [session, again].map((one) => {
             one.begin(JSON.stringify({ crop }));
@@ -106,71 +107,212 @@ test("every built-in scene loads as a file, and is saved as the same scene", () 
     }
 });
 
-test("two instances with parts of a picture make the picture", async () => {
-    const name = "gallery/ball";
-    const size = [50, 40];
-    const parts = [
-        { x: 0, y: 0, width: 50, height: 17 },
-        { x: 0, y: 17, width: 50, height: 23 },
-    ];
-    const whole = Session.builtin(name);
-    whole.begin(JSON.stringify({ size, spp: 3 }));
-    finish(whole);
+// What a worker of a pool does, and what another one makes of it.
+async function inShares(name, shares, options) {
     const gathered = Session.builtin(name);
-    gathered.gather(JSON.stringify({ size, spp: 3 }));
-    assert.equal(gathered.step(5).length, 0);
-    for (const [number, crop] of parts.entries()) {
-        assert.ok(!gathered.is_finished && gathered.film_sha256 === undefined);
-        const worker = (await instance(`worker-${number}`)).Session.builtin(name);
-        worker.begin(JSON.stringify({ size, spp: 3, coarsest: 8, crop }));
-        finish(worker);
-        const { x, y, width, height } = crop;
-        gathered.put(x, y, width, height, worker.values(x, y, width, height));
-        assert.deepEqual(worker.rgba(x, y, width, height), whole.rgba(x, y, width, height));
+    gathered.gather(JSON.stringify(options));
+    const [width, height] = gathered.size;
+    let pixels = 0;
+    for (let share = 0; share < shares; share++) {
+        assert.ok(gathered.film_sha256 === undefined);
+        const worker = (await instance(`worker-${share}`)).Session.builtin(name);
+        worker.begin(JSON.stringify({ ...options, coarsest: 4, share: [share, shares] }));
+        let fineness = 0;
+        const pieces = new Set();
+        while (!worker.is_finished) {
+            const changed = worker.step(0);
+            assert.ok(changed.length > 0 && changed.length % 5 === 0);
+            for (let at = 0; at < changed.length; at += 5) {
+                const [x, y, w, h, step] = changed.subarray(at, at + 5);
+                const [column, row] = [x >> 6, y >> 6];
+                assert.ok((x + w - 1) >> 6 === column && (y + h - 1) >> 6 === row, "it lies in one piece");
+                assert.equal((column + row) % shares, share, "and in one of its own");
+                assert.ok(1 / step >= fineness, "the whole share gets finer together");
+                fineness = 1 / step;
+                worker.rgba(x, y, w, h);
+                pieces.add(`${column},${row}`);
+            }
+        }
+        assert.deepEqual([...worker.step(5)], []);
+        findings(() => worker.png());
+        const progress = JSON.parse(worker.progress());
+        assert.equal(progress.pixels, progress.total_pixels);
+        for (const [column, row] of [...pieces].map((piece) => piece.split(",").map(Number))) {
+            const [x, y] = [64 * column, 64 * row];
+            const [w, h] = [Math.min(64, width - x), Math.min(64, height - y)];
+            const values = worker.values(x, y, w, h);
+            gathered.put(x, y, w, h, values, false);
+            gathered.put(x, y, w, h, values, true);
+            pixels += w * h;
+        }
+        gathered.put_statistics(worker.statistics());
+        worker.free();
     }
-    assert.equal(gathered.film_sha256, whole.film_sha256);
-    assert.deepEqual(gathered.png(), whole.png());
-    findings(() => gathered.put(0, 0, 50, 41, new Float64Array(50 * 41 * 3)));
-    findings(() => gathered.put(0, 0, 2, 2, new Float64Array(11)));
-    findings(() => gathered.put(4294967295, 0, 2, 2, new Float64Array(12)));
-    findings(() => whole.put(0, 0, 1, 1, new Float64Array(3)));
+    assert.equal(pixels, width * height, "nothing is rendered twice");
+    return gathered;
+}
+
+for (const [name, options] of [
+    ["lecture/default", { size: [200, 130] }],
+    ["gallery/ball", { size: [150, 100], spp: 13 }],
+    ["gallery/lens", { size: [65, 129], spp: 2, depth: 3 }],
+]) {
+    test(`${name} in shares has the hash of the command`, async () => {
+        const given = Object.entries(options).flatMap(([key, value]) => [`--${key}`, [value].flat().join("x")]);
+        const expected = native(name, ...given);
+        const whole = Session.builtin(name);
+        whole.begin(JSON.stringify(options));
+        finish(whole);
+        for (const shares of [1, 2, 3]) {
+            const gathered = await inShares(name, shares, options);
+            assert.equal(gathered.film_sha256, expected.film_sha256, `${shares}`);
+            assert.equal(gathered.validate(), whole.validate());
+            assert.deepEqual(gathered.png(), whole.png());
+            const rays = Object.values(expected.rays).reduce((sum, count) => sum + count);
+            assert.equal(JSON.parse(gathered.progress()).rays, rays);
+        }
+    });
+}
+
+test("what was gathered is taken as it is given", () => {
+    const session = Session.builtin("gallery/ball");
+    session.gather('{ "size": [50, 40] }');
+    session.put(0, 0, 50, 40, new Float64Array(50 * 40 * 3).fill(0.5), false);
+    assert.ok(!session.is_finished && session.rgba(0, 0, 1, 1)[0] > 0 && session.png().length > 0);
+    findings(() => session.put(0, 0, 50, 41, new Float64Array(50 * 41 * 3), true));
+    findings(() => session.put(0, 0, 2, 2, new Float64Array(11), true));
+    findings(() => session.put(4294967295, 0, 2, 2, new Float64Array(12), true));
+    for (const statistics of ["", "[]", "{}", '{"rays": 1}']) {
+        findings(() => session.put_statistics(statistics));
+    }
+    session.begin('{ "size": [50, 40] }');
+    findings(() => session.put(0, 0, 1, 1, new Float64Array(3), true));
+    findings(() => session.put_statistics(session.statistics()));
 });
 
-test("an edited scene is the scene that was written so", () => {
+const edited = (session, ...changes) => session.edit(JSON.stringify(changes));
+
+test("an edit changes the text, and the picture is that of the text", () => {
     const session = Session.builtin("lecture/default");
+    const text = session.text;
     session.begin('{ "size": [40, 40] }');
     finish(session);
     const before = session.film_sha256;
     for (let step = 0; step < 5; step++) {
-        session.edit("material.glass.eta", `${1.1 + step / 10}`);
-        session.edit("camera.eye", `[${step}, 5, 20]`);
+        edited(session, ["material.glass.eta", `${1.1 + step / 10}`]);
+        edited(session, ["camera.eye", `[${step}, 5, 20]`], ["camera.bounds.1", "-1"]);
     }
     assert.ok(!session.is_finished && session.film_sha256 === undefined);
+    assert.equal(
+        session.text,
+        text
+            .replace("eta = 2.0", "eta = 1.5")
+            .replace("eye = [50, 50, 100]", "eye = [4, 5, 20]")
+            .replace("bounds = [-2, 2, -2, 2] # left", "bounds = [-1, 2, -2, 2] # left"),
+    );
     session.begin('{ "size": [40, 40] }');
     finish(session);
     assert.notEqual(session.film_sha256, before);
-    const set = ["--set", "material.glass.eta=1.5", "--set", "camera.eye=[4, 5, 20]", "--size", "40x40"];
-    assert.equal(session.film_sha256, native("lecture/default", ...set).film_sha256);
-    const fresh = Session.load("fresh.toml", bytes(session.save()));
-    fresh.begin('{ "size": [40, 40] }');
-    assert.equal(finish(fresh).film_sha256, session.film_sha256);
+    const set = ["material.glass.eta=1.5", "camera.eye=[4, 5, 20]", "camera.bounds.1=-1"].flatMap((change) => ["--set", change]);
+    assert.equal(session.film_sha256, native("lecture/default", ...set, "--size", "40x40").film_sha256);
 
     // What is refused leaves all as it was.
-    const saved = session.save();
+    const { text: kept, film_sha256 } = session;
     for (const [key, value] of [
         ["material.glas.eta", "1"],
         ["material.glass.eta", "no number"],
         ["material.glass.eta", "-1"],
+        ["material.glass", null],
         ["no key at all", "1"],
         ["", ""],
         ["camera", "{"],
+        ["camera", null],
+        ["sphere.5", null],
         ["render.size", "[0, 0]"],
-        ["\u0000", "\ud800"],
+        ["\u0000", "\ufffd"],
     ]) {
-        assert.ok(findings(() => session.edit(key, value), key).length > 0);
+        const [finding] = findings(() => edited(session, ["ambient", "0.9"], [key, value]), key);
+        assert.ok(finding.message.includes(key) && finding.message.includes((value ?? "").slice(0, 60)), finding.message);
+        assert.equal(finding.place, undefined, "nobody has seen the text that was refused");
     }
-    assert.equal(session.save(), saved);
-    assert.equal(session.film_sha256, fresh.film_sha256);
+    for (const changes of ["", "[]]", "{}", "[[1, 2]]", '[["a", "\\ud800"]]', '[["ambient"]]', '["ambient", "1"]', '[["ambient", 1]]']) {
+        findings(() => session.edit(changes), changes);
+    }
+    assert.deepEqual([session.text, session.film_sha256], [kept, film_sha256]);
+    session.edit("[]");
+    assert.equal(session.text, kept);
+});
+
+test("what an edit adds or takes away is there, or is not", () => {
+    const session = Session.builtin("lecture/default");
+    const { text, size } = session;
+    edited(
+        session,
+        ["render.spp", "3"],
+        ["render.size", "[20, 10]"],
+        ["material.water", "{ ko = 0, eta = 1.33 }"],
+        ["sphere", '{ name = "drop", center = [1, 2, 3], radius = 1, material = "water" }'],
+    );
+    assert.ok(session.text.includes('\n[[sphere]]\nname = "drop"\n') && session.text.includes("\n[material.water]\n"));
+    const { render, sphere, material } = JSON.parse(session.scene());
+    assert.deepEqual([render.spp, sphere.at(-1).name, material.water.eta, [...session.size]], [3, "drop", 1.33, [20, 10]]);
+    edited(session, ["sphere.drop", null], ["material.water", null], ["render.spp", null], ["render.size", `[${size.join(", ")}]`]);
+    assert.equal(session.text, text);
+});
+
+test("a text that was typed is taken, or refused at its place", () => {
+    const session = Session.builtin("lecture/default");
+    const { text } = session;
+    session.begin("{}");
+    for (const [from, to, line] of [
+        ["radius = 9", "radius = -9", 1 + text.slice(0, text.indexOf("radius = 9")).split("\n").length - 1],
+        ["[render]", "[render", 1 + text.slice(0, text.indexOf("[render]")).split("\n").length - 1],
+    ]) {
+        const [finding] = findings(() => session.revise(text.replace(from, to)));
+        assert.equal(finding.place.line, line);
+    }
+    for (const hostile of ["", "\u0000", "snell = 1", "[".repeat(100_000), `a = ${"[".repeat(100_000)}`, "#".repeat(65 << 20)]) {
+        findings(() => session.revise(hostile), hostile.slice(0, 20));
+    }
+    assert.equal(session.text, text);
+    assert.ok(session.step(0).length > 0, "the picture goes on");
+    session.revise(`# Mine.\r\n${text.replace("size = [512, 512]", "size = [30, 20]")}`);
+    assert.ok(session.text.startsWith("# Mine.\n# The lecture") && session.size.join() === "30,20");
+    const [width, height] = session.size;
+    session.begin("{}");
+    assert.equal(finish(session).values(0, 0, width, height).length, 3 * width * height);
+});
+
+test("what is no TOML becomes TOML that makes the same picture", () => {
+    const folder = mkdtempSync(join(tmpdir(), "snell-studio-"));
+    try {
+        const file = join(folder, "scene.json");
+        run("convert", "gallery/ball", "-o", file);
+        const session = Session.load("scene.json", readFileSync(file));
+        assert.ok(session.text.includes("\n[render]\n"));
+        session.begin('{ "size": [16, 16] }');
+        assert.equal(finish(session).film_sha256, native(file, "--size", "16x16").film_sha256);
+        edited(session, ["render.spp", "2"]);
+        assert.ok(session.text.includes("spp = 2\n"));
+    } finally {
+        rmSync(folder, { recursive: true });
+    }
+});
+
+test("the view tells what geometry has stayed", () => {
+    const session = Session.builtin("gallery/brilliant");
+    const view = () => JSON.parse(session.view()).meshes;
+    const before = view();
+    assert.ok(before.length > 0 && before.every(({ vertices, faces }) => vertices.length === 0 && faces.length === 0));
+    const { vertices, faces } = session.view_mesh(0);
+    assert.ok(vertices instanceof Float64Array && faces instanceof Uint32Array && faces.length > 0);
+    assert.ok(faces.every((vertex) => 3 * vertex + 2 < vertices.length));
+    edited(session, ["ambient", "0.1"], ["camera.near", "-4"]);
+    assert.deepEqual(view(), before);
+    const kind = ["mesh", "lathe", "plane", "box", "disc"].find((kind) => JSON.parse(session.scene())[kind]?.[0].name === before[0].name);
+    edited(session, [`${kind}.1.transform`, "[{ scale = [2, 2, 2] }]"]);
+    assert.notEqual(view()[0].geometry, before[0].geometry);
+    findings(() => session.view_mesh(before.length));
 });
 
 test("explanations and the view are those of the command", () => {
@@ -228,7 +370,8 @@ material = "green"
         [["scenes/models/a.obj", bytes(model)]],
     ]) {
         const session = Session.load("scenes/s.toml", bytes(scene), files);
-        session.edit("mesh.1.material", "green");
+        session.edit('[["mesh.1.material", "\\"green\\""]]');
+        assert.ok(session.text.startsWith(scene.slice(0, 200)));
         session.begin('{ "size": [16, 16] }');
         finish(session);
     }
@@ -290,6 +433,10 @@ test("nothing traps", () => {
         '{ "spp": 0 }',
         '{ "spp": 4294967295 }',
         '{ "integrator": "magic" }',
+        '{ "share": [0, 0] }',
+        '{ "share": [2, 2] }',
+        '{ "share": [-1, 2] }',
+        '{ "share": [0] }',
         '{ "crop": { "x": 500, "y": 0, "width": 13, "height": 1 } }',
         '{ "crop": { "x": 0, "y": 0, "width": 0, "height": 1 } }',
         '{ "crop": { "x": 4294967295, "y": 4294967295, "width": 4294967295, "height": 4294967295 } }',
@@ -300,6 +447,8 @@ test("nothing traps", () => {
     for (const options of [
         '{ "size": [1, 1], "coarsest": 0 }',
         '{ "size": [3, 2], "coarsest": 4294967295, "spp": 7 }',
+        '{ "size": [3, 2], "coarsest": 4, "share": [0, 4294967295] }',
+        '{ "size": [3, 2], "coarsest": 4, "share": [4294967294, 4294967295] }',
         '{ "size": [16, 16], "integrator": "whitted", "shadows": "opaque", "depth": 0 }',
         undefined,
     ]) {

@@ -426,16 +426,17 @@ material = "dotted"
         assert_eq!(parse(&Source::new("again", &*again), Syntax::Toml).unwrap().spheres.len(), 1);
     }
 
+    #[track_caller]
+    fn assert_ends(text: &str, end: &str) {
+        assert!(text.trim_end().ends_with(end), "{text}");
+    }
+
     #[test]
     fn lists_in_one_line_stay_so() {
         let text = "snell = 1\nsphere = [{ name = \"a\", radius = 1 }, { radius = 2 }] # two\n";
-        assert_differs(put(text, "sphere.a.radius", "3"), "[{ name = \"a\", radius = 3 }, { radius = 2 }] # two");
-        assert_differs(put(text, "sphere", "{ radius = 3 }"), "radius = 1 }, { radius = 2 }, { radius = 3 }] # two");
-        assert_differs(changed(text, &[("sphere.1", None)]).unwrap(), "sphere = [{ radius = 2 }] # two");
-        #[track_caller]
-        fn assert_differs(text: String, end: &str) {
-            assert!(text.trim_end().ends_with(end), "{text}");
-        }
+        assert_ends(&put(text, "sphere.a.radius", "3"), "[{ name = \"a\", radius = 3 }, { radius = 2 }] # two");
+        assert_ends(&put(text, "sphere", "{ radius = 3 }"), "radius = 1 }, { radius = 2 }, { radius = 3 }] # two");
+        assert_ends(&changed(text, &[("sphere.1", None)]).unwrap(), "sphere = [{ radius = 2 }] # two");
     }
 
     #[test]

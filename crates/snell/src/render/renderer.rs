@@ -117,6 +117,8 @@ pub(super) struct Schedule<'a> {
     spp: u32,
     /// The one that is under way comes first.
     passes: VecDeque<Pass>,
+    /// Edge of its tiles.
+    tile_size: u32,
     /// How many tiles of it have been taken, and those that were taken and not finished.
     taken: u64,
     again: Vec<u64>,
@@ -173,6 +175,12 @@ impl Pass {
     }
 }
 
+/// Samples of a pixel in one pass over a picture that is shown meanwhile: a power of two.
+const MOST_SAMPLES: u32 = 32;
+
+/// Rays that a tile of such a picture should take at most, some milliseconds of them: whoever renders it step by step has more to do.
+const MOST_RAYS: u64 = 1 << 13;
+
 /// The passes over a picture, without those that have no pixels.
 fn passes(crop: &Crop, spp: u32, kind: Passes) -> VecDeque<Pass> {
     let Passes::CoarseToFine { coarsest } = kind else {
@@ -196,7 +204,7 @@ fn passes(crop: &Crop, spp: u32, kind: Passes) -> VecDeque<Pass> {
     // Then as many samples at a time as there are already, so that there are few sums to keep.
     let mut first = 1;
     while first < spp {
-        let end = first.saturating_mul(2).min(spp);
+        let end = first.saturating_add(first.min(MOST_SAMPLES)).min(spp);
         passes.push_back(Pass { x: 0, y: 0, step: 1, samples: first..end, completes: true });
         first = end;
     }
@@ -231,6 +239,7 @@ impl<'a> Schedule<'a> {
             crop,
             spp: settings.spp,
             passes,
+            tile_size: options.tile_size,
             taken: 0,
             again: Vec::new(),
             planes: Vec::new(),
@@ -273,7 +282,10 @@ impl<'a> Schedule<'a> {
     /// The same within the pass that is under way.
     fn step_of_pass(&mut self, film: &mut Film, world: &World, settings: &Settings, tiles: u64) -> Vec<Tile> {
         let Some(pass) = self.passes.front().cloned() else { return Vec::new() };
-        let (count, size) = (self.crop.width as usize * self.crop.height as usize, self.options.tile_size);
+        if self.taken == 0 {
+            self.tile_size = self.size_for(&pass);
+        }
+        let (count, size) = (self.crop.width as usize * self.crop.height as usize, self.tile_size);
         if self.accumulator.is_some() && self.planes.is_empty() {
             let blocks = Block::of(pass.samples.clone());
             self.planes = blocks.into_iter().map(|block| (block, vec![Rgb::black(); count])).collect();
@@ -301,6 +313,7 @@ impl<'a> Schedule<'a> {
                 world,
                 settings,
                 options: &self.options,
+                tile_size: size,
                 crop: self.crop,
                 accumulator: self.accumulator.as_ref(),
                 before: [self.samples, self.rays],
@@ -329,6 +342,13 @@ impl<'a> Schedule<'a> {
         tiles
     }
 
+    /// The edge of the tiles of a pass, as far as the passes before tell what a pixel takes.
+    fn size_for(&self, pass: &Pass) -> u32 {
+        let rays = (self.rays * pass.samples.len() as u64).checked_div(self.samples).unwrap_or(0);
+        let pixels = MOST_RAYS / rays.max(1);
+        (pixels.isqrt() as u32).clamp(1, self.options.tile_size)
+    }
+
     /// Goes on with the next pass.
     fn end_pass(&mut self, completes_samples: bool) {
         self.passes.pop_front();
@@ -355,6 +375,7 @@ struct SharedSchedule<'b> {
     world: &'b World,
     settings: &'b Settings,
     options: &'b Options<'b>,
+    tile_size: u32,
     crop: Crop,
     accumulator: Option<&'b Accumulator>,
     /// Samples and rays before this step.
@@ -434,14 +455,14 @@ impl Shared<'_> {
     /// The next tile, its turn and its band, if there is one and nobody has cancelled.
     fn take_tile(&self) -> Option<(u64, usize, Tile)> {
         let turn = *self.turns.get(self.next.fetch_add(1, Ordering::Relaxed) as usize)?;
-        let SharedSchedule { options, crop, .. } = &self.schedule;
+        let SharedSchedule { options, tile_size, crop, .. } = &self.schedule;
         if options.cancel.is_some_and(|c| c.load(Ordering::Relaxed)) {
             return None;
         }
-        let [columns, _] = self.pass.tiles(crop, options.tile_size);
+        let [columns, _] = self.pass.tiles(crop, *tile_size);
         let number = self.order.nth(turn);
         let (column, row) = (number % columns, number / columns);
-        Some((turn, row as usize, self.pass.tile(crop, options.tile_size, [column, row])))
+        Some((turn, row as usize, self.pass.tile(crop, *tile_size, [column, row])))
     }
 
     /// Stores the pixels of a tile.
