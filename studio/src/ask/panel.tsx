@@ -26,7 +26,7 @@ export function AskPanel({ store, space }: { store: Store; space: Space | null }
 function Invitation() {
   return (
     <div class="invitation">
-      <h3>Why is this pixel that colour?</h3>
+      <h2>Why is this pixel that colour?</h2>
       <p>
         Point at the picture to see the rays of a pixel. Click to keep them, then follow each one: where it goes, what it meets, what it adds. The
         parts add up to the pixel, bit for bit.
@@ -95,7 +95,7 @@ function Find({ store, tree }: { store: Store; tree: RayTreeDocument | null }) {
   if (names.length === 0) return null;
   return (
     <section class="find" aria-labelledby="find">
-      <h3 id="find">Where is it seen?</h3>
+      <h2 id="find">Where is it seen?</h2>
       <p class="quiet">All pixels that show an object, directly, in mirrors or through glass.</p>
       <div class="chips">
         {names.map((name) => (

@@ -207,7 +207,9 @@ function ZoomButtons({ zoom, fit, by }: { zoom: number; fit(): void; by(factor: 
   return (
     <div class="zoom" role="group" aria-label="Zoom" onPointerDown={keep} onPointerUp={keep}>
       <button type="button" aria-label="Zoom out" onClick={() => by(1 / 1.5)}>−</button>
-      <button type="button" aria-label="Fit the picture" onClick={fit}>{Math.round(100 * zoom)} %</button>
+      <button type="button" aria-label={`${Math.round(100 * zoom)} %, fit the picture`} onClick={fit}>
+        {Math.round(100 * zoom)} %
+      </button>
       <button type="button" aria-label="Zoom in" onClick={() => by(1.5)}>+</button>
     </div>
   );

@@ -41,7 +41,7 @@ function ObjectPicker({ store }: { store: Store }) {
   const found = objects.filter(({ name, kind }) => `${kind} ${name}`.toLowerCase().includes(wanted));
   return (
     <section aria-labelledby="objects">
-      <h3 id="objects">Objects</h3>
+      <h2 id="objects">Objects</h2>
       {objects.length > 12 && (
         <input type="search" aria-label="Search objects" placeholder="Search" value={search.value} onInput={(event) => (search.value = event.currentTarget.value)} />
       )}
@@ -69,9 +69,9 @@ function ObjectValues({ store, object, scene }: { store: Store; object: SceneObj
   const transfer = scene.render.transfer ?? 'srgb';
   return (
     <section aria-label={`Values of ${object.name}`}>
-      <h3>
+      <h2>
         {object.name} <span class="quiet">{object.kind}</span>
-      </h3>
+      </h2>
       {object.kind === 'sphere' && (
         <>
           <VectorField store={store} of={`${key}.center`} label="Centre" value={object.data.center} />
@@ -133,9 +133,9 @@ function MaterialValues({ store, name, scene }: { store: Store; name: string; sc
   const clear = whiteOf(material.ko ?? 1) < 1;
   return (
     <section aria-label={`Material ${name}`}>
-      <h3>
+      <h2>
         {name} <span class="quiet">material</span>
-      </h3>
+      </h2>
       <Presets store={store} of={key} label="Preset" material={material} optics={optics} />
       <Index store={store} of={key} material={material} optics={optics} />
       <ColorField store={store} of={`${key}.ka`} label="Ambient" value={material.ka ?? 0} transfer={transfer} />
@@ -230,7 +230,7 @@ function PictureValues({ store, scene }: { store: Store; scene: SceneDocument })
   const more: Edit[] = render.shadows === 'tinted' ? [['render.shadows', null]] : [];
   return (
     <section aria-label="The picture">
-      <h3>Picture</h3>
+      <h2>Picture</h2>
       <Choice store={store} of="render.integrator" label="Model of light" value={render.integrator} options={MODELS} more={more} />
       <Slider store={store} of="render.max_depth" label="Depth" value={render.max_depth ?? 32} min={0} max={32} step={1} />
       <Choice store={store} of="render.shadows" label="Shadows" value={render.shadows ?? (optics ? 'tinted' : 'opaque')} options={shadows} />
