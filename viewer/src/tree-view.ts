@@ -134,6 +134,8 @@ export class TreeView {
       element('span', { class: 'twist', 'aria-hidden': true }),
       ...(row.id < 0 ? [] : [rayStroke(this.model.nodes[row.id]!)]),
       element('span', { class: 'title' }, title),
+      // Read out, the two are words of their own.
+      ' ',
       swatch(cssColor(this.subtotal(row.id), this.transfer)),
       element('span', { class: 'share' }, share),
     );
