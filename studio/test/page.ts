@@ -9,7 +9,7 @@ import { type Browser, type BrowserContextOptions, chromium, type Page } from 'p
 import type { Store } from '../src/store';
 
 const CHROMIUM = '/usr/bin/chromium';
-const DIST = fileURLToPath(new URL('../../target/studio-dist/', import.meta.url));
+export const DIST = fileURLToPath(new URL('../../target/studio-dist/', import.meta.url));
 /** Screenshots, to be looked at. */
 export const OUT = fileURLToPath(new URL('out/', import.meta.url));
 const PATH = '/some/where/';

@@ -1,12 +1,13 @@
 /** What people do in the studio, as they do it. Usage: SNELL=../target/ci/snell npx vitest run test */
 
-import { execFileSync } from 'node:child_process';
-import { existsSync, readdirSync, readFileSync } from 'node:fs';
+import { execFileSync, spawn } from 'node:child_process';
+import { existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import type { Server } from 'node:http';
+import { tmpdir } from 'node:os';
 import { basename, join } from 'node:path';
 import type { Browser, Page } from 'playwright-core';
 import { afterAll, beforeAll, expect, test } from 'vitest';
-import { finished, launch, open, OUT, placeOf, serve } from './page';
+import { DIST, finished, launch, open, OUT, placeOf, serve } from './page';
 
 const snell = process.env.SNELL ?? '../target/ci/snell';
 let browser: Browser;
@@ -224,8 +225,12 @@ test('two models of light are compared', () =>
     await page.keyboard.press('ArrowRight');
     expect(Number(await slider.getAttribute('aria-valuenow'))).toBe(before + 2);
     await page.waitForFunction(() => {
-      const [one, other] = [window.snell.surface.canvas, window.snell.comparison.value!.surface.canvas];
-      return other.width === one.width && other.toDataURL() !== one.toDataURL();
+      const pixels = [window.snell.surface.canvas, window.snell.comparison.value!.surface.canvas].map((canvas) => {
+        const { width, height } = canvas;
+        return canvas.getContext('2d')!.getImageData(width >> 1, height >> 1, 1, 1).data.join();
+      });
+      // Both are there, and in the middle of the glass the models differ.
+      return pixels.every((pixel) => pixel.endsWith(',255')) && pixels[0] !== pixels[1];
     });
     await page.screenshot({ path: `${OUT}compare.png` });
     await page.getByRole('button', { name: 'Stop comparing' }).click();
@@ -316,4 +321,31 @@ test('a host that does not know what WebAssembly is serves it all the same', asy
   expect(trouble).toEqual([]);
   await page.context().close();
   other.server.close();
+});
+
+test('snell studio shows a scene, and again whenever its file changes', async () => {
+  const folder = mkdtempSync(join(tmpdir(), 'snell-studio-'));
+  const file = join(folder, 'a scene.toml');
+  execFileSync(snell, ['scenes', '--save', 'lecture/default', '-o', file]);
+  const text = readFileSync(file, 'utf8');
+  const source = (eta: string) => text.replace('eta = 2.0', `eta = ${eta}`);
+  const command = spawn(snell, ['studio', file, '--no-open', '--port', '0'], { env: { ...process.env, SNELL_STUDIO_DIST: DIST } });
+  try {
+    const address = await new Promise<string>((done) => command.stdout.on('data', (data: Buffer) => done(String(data).trim())));
+    const { page, trouble } = await open(browser, address);
+    await page.waitForFunction(() => window.snell.base.value?.name === 'a scene.toml');
+    await finished(page);
+    writeFileSync(file, source('1.5'));
+    await page.waitForFunction(() => window.snell.revision.value!.scene.material!.glass!.eta === 1.5);
+    writeFileSync(file, 'snell = 1\nnonsense\n');
+    await page.getByRole('alert').waitFor();
+    expect(await page.evaluate(() => window.snell.revision.value!.scene.material!.glass!.eta)).toBe(1.5);
+    writeFileSync(file, source('1.7'));
+    await page.waitForFunction(() => window.snell.revision.value!.scene.material!.glass!.eta === 1.7);
+    expect(trouble).toEqual([]);
+    await page.context().close();
+  } finally {
+    command.kill();
+    rmSync(folder, { recursive: true });
+  }
 });

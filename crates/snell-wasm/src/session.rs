@@ -116,7 +116,9 @@ impl Session {
     pub fn scene(&self) -> Answer<String> {
         let mut scene = or_throw(scene_file::parse(&self.given.source, Syntax::Toml))?;
         let short = |instances: &mut Vec<_>| {
-            instances.truncate(if instances.len() > MOST_INSTANCES { 0 } else { MOST_INSTANCES });
+            if instances.len() > MOST_INSTANCES {
+                instances.clear();
+            }
         };
         scene.spheres.iter_mut().for_each(|sphere| short(&mut sphere.instances));
         for mesh in &mut scene.meshes {
