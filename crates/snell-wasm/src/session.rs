@@ -110,7 +110,9 @@ impl Session {
     pub fn scene(&self) -> Answer<String> {
         let mut scene = or_throw(scene_file::parse(&self.given.source, Syntax::Toml))?;
         let short = |instances: &mut Vec<_>| {
-            instances.truncate(if instances.len() > MOST_INSTANCES { 0 } else { MOST_INSTANCES })
+            if instances.len() > MOST_INSTANCES {
+                instances.clear();
+            }
         };
         scene.spheres.iter_mut().for_each(|sphere| short(&mut sphere.instances));
         for mesh in &mut scene.meshes {
@@ -367,7 +369,9 @@ const MOST_SHOWN: usize = 60;
 /// The same for the same numbers.
 fn fingerprint(ViewGeometry { vertices, faces }: &ViewGeometry) -> String {
     let mut hasher = DefaultHasher::new();
-    vertices.iter().for_each(|number| number.to_bits().hash(&mut hasher));
+    for number in vertices {
+        number.to_bits().hash(&mut hasher);
+    }
     faces.hash(&mut hasher);
     format!("{:016x}", hasher.finish())
 }
