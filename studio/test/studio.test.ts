@@ -214,6 +214,23 @@ test('a hundred thousand spheres, an empty scene and a huge picture do not freez
     await finished(page);
   }));
 
+test('things are added and removed, each in one step', () =>
+  on('#lecture/default', async (page) => {
+    const before = await finished(page);
+    await page.getByRole('tab', { name: 'Scene' }).click();
+    for (const kind of ['sphere', 'box', 'plane', 'disc', 'light']) {
+      await page.getByLabel('Add an object').selectOption(kind);
+      await page.waitForFunction((kind) => window.snell.selected.value?.name === kind, kind);
+      await page.getByRole('button', { name: `Remove ${kind}` }).click();
+      await page.waitForFunction((kind) => window.snell.objects.value.every(({ name }) => name !== kind), kind);
+      await page.getByRole('button', { name: 'Undo' }).click();
+      await page.waitForFunction((kind) => window.snell.objects.value.some(({ name }) => name === kind), kind);
+      await page.getByRole('button', { name: 'Undo' }).click();
+      await page.waitForFunction((kind) => window.snell.objects.value.every(({ name }) => name !== kind), kind);
+    }
+    expect(await finished(page)).toBe(before);
+  }));
+
 test('two models of light are compared', () =>
   on('#lecture/default', async (page) => {
     const hash = await finished(page);

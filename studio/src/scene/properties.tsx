@@ -4,6 +4,7 @@ import { useSignal } from '@preact/signals';
 import type { Edit } from '../engine/protocol';
 import type { SceneDocument } from '../generated/scene';
 import type { Store } from '../store';
+import { type Addable, elementOf, freeName } from './add';
 import { Choice, ColorField, NumberField, Slider, useEdit, VectorField } from './controls';
 import { quoted, type SceneObject } from './objects';
 import { PRESETS } from './presets';
@@ -59,7 +60,45 @@ function ObjectPicker({ store }: { store: Store }) {
         ))}
         {found.length > MANY && <span class="quiet">and {found.length - MANY} more: search for them</span>}
       </div>
+      <AddAndRemove store={store} />
     </section>
+  );
+}
+
+const ADDABLE: Addable[] = ['sphere', 'box', 'plane', 'disc', 'light'];
+
+function AddAndRemove({ store }: { store: Store }) {
+  const { scene } = store.revision.value!;
+  const selected = store.selected.value;
+  const hasMaterial = Object.keys(scene.material ?? {}).length > 0;
+  const add = (kind: Addable) => {
+    const name = freeName(kind, new Set(store.objects.value.map((object) => object.name)));
+    store.edit([[kind, elementOf(kind, name, scene)]], { label: `add ${name}` });
+    store.select(name);
+  };
+  return (
+    <div class="group">
+      <select
+        aria-label="Add an object"
+        value=""
+        onChange={(event) => {
+          add(event.currentTarget.value as Addable);
+          event.currentTarget.value = '';
+        }}
+      >
+        <option value="" disabled>
+          Add …
+        </option>
+        {ADDABLE.filter((kind) => hasMaterial || kind === 'light').map((kind) => (
+          <option key={kind}>{kind}</option>
+        ))}
+      </select>
+      {selected && selected.kind !== 'camera' && (
+        <button type="button" onClick={() => store.edit([[selected.key, null]], { label: `remove ${selected.name}` })}>
+          Remove {selected.name}
+        </button>
+      )}
+    </div>
   );
 }
 
