@@ -31,7 +31,7 @@ export function Status({ store }: { store: Store }) {
           <>
             <progress value={pixels} max={total} aria-label="Progress of the picture" />
             <button type="button" class="plain" onClick={() => (store.stopped.value ? store.render() : store.stop())}>
-              {store.stopped.value ? 'Go on' : 'Stop'}
+              {store.stopped.value ? 'Render' : 'Stop'}
             </button>
           </>
         ) : (

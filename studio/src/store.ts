@@ -1,10 +1,10 @@
 /** What the studio shows, and all that can be done to it. Views read the signals and call the methods; they hold no scene of their own. */
 
-import { batch, computed, signal } from '@preact/signals';
+import { batch, computed, effect, signal } from '@preact/signals';
 import type { RayTreeDocument } from 'snell-viewer';
 import { Cancelled, Engine, Refusal } from './engine/engine';
 import type { Answers, Change, Edit, Finding, Given, PictureOptions, Revision, Sighting } from './engine/protocol';
-import { History } from './history';
+import { History, type Version } from './history';
 import { Surface } from './picture/surface';
 import { objectsOf, type SceneObject } from './scene/objects';
 
@@ -46,8 +46,12 @@ export interface EditOptions {
   group?: string;
 }
 
+/** Milliseconds without a key before what was written is read. */
+const CALM = 250;
+
 interface Step {
-  change: Change;
+  /** Or a step back or forth in the history. */
+  change: Change | -1 | 1;
   /** Of what is opened: the text that it had been given since. */
   text?: string;
   label: string;
@@ -68,6 +72,10 @@ export class Store {
   readonly draft = signal<string | null>(null);
   /** Is the scene as it is built in? */
   readonly pristine = signal(false);
+  /** What a person should know, whatever the scene is. */
+  readonly notes = signal<Finding[]>([]);
+  /** Nothing is said of pixels: somebody is to find out. */
+  readonly quiet = signal(false);
   /** Why the last change was refused; the scene is as it was before. */
   readonly refused = signal<Finding[]>([]);
   /** What takes longer than a moment, for people who wait. */
@@ -106,10 +114,18 @@ export class Store {
   readonly engine: Engine;
   private readonly history = new History<Base>();
   private readonly steps: Step[] = [];
-  private started: Promise<void> | null = null;
+  /** While the engine starts again. */
+  private recovery: Promise<void> | null = null;
+  /** The version with which it last had to. */
+  private failed: Version<Base> | undefined;
+  /** Does it have a scene? */
+  private isOpen = false;
   private running = false;
+  private calm: ReturnType<typeof setTimeout> | undefined;
   private covered: (() => void) | null = null;
   private begun = 0;
+  /** Files that are being made. */
+  private saving = 0;
   private openedText = '';
   private readonly question = { number: 0, asking: false };
 
@@ -130,18 +146,21 @@ export class Store {
           this.outcome.value = outcome;
           this.renderComparison();
         },
+        refused: (findings) => {
+          this.refused.value = findings;
+          this.stopped.value = true;
+          this.covered?.();
+        },
         broken: (message) => void this.recover(message),
       },
       threads,
     );
   }
 
-  /** Starts the engine, once. */
-  start(): Promise<void> {
-    this.started ??= this.engine.start().then(() => {
-      this.busy.value = null;
-    });
-    return this.started;
+  /** Starts the engine. */
+  async start(): Promise<void> {
+    await this.engine.start();
+    this.busy.value = null;
   }
 
   /** Opens a scene in place of the one that is shown, with a text that it has been given since. Rejects with a `Refusal`. */
@@ -151,15 +170,10 @@ export class Store {
 
   /** Changes values of the scene. What is refused is told by `refused`. */
   edit(edits: Edit[], { label, group = undefined }: EditOptions): void {
-    if (this.draft.value !== null) {
-      // Or what was written would be lost.
-      const help = 'Mend it under “Source”, or undo what was written there.';
-      this.refused.value = [{ message: 'The text of the scene has an error, so that nothing else can be changed.', help }];
-      return;
-    }
+    this.readDraft();
     const last = this.steps.at(-1);
     // Of a drag only the newest place counts.
-    if (last && group !== undefined && last.group === group && 'edit' in last.change) {
+    if (last && group !== undefined && last.group === group && typeof last.change === 'object' && 'edit' in last.change) {
       const changed = new Map([...last.change.edit, ...edits]);
       last.change = { edit: [...changed] };
       return;
@@ -172,27 +186,41 @@ export class Store {
     this.history.endGroup();
   }
 
-  /** Takes the text that a person has written. */
-  revise(text: string): void {
+  /** Takes the text that a person is writing, and reads it when there is a pause. */
+  write(text: string): void {
+    // At once: an earlier text that is read meanwhile must not take the place of this one.
     this.draft.value = text;
+    clearTimeout(this.calm);
+    this.calm = setTimeout(() => this.readDraft(), CALM);
+  }
+
+  /** Reads what has been written and was not read yet. */
+  readDraft(): void {
+    if (this.calm === undefined) return;
+    clearTimeout(this.calm);
+    this.calm = undefined;
+    const text = this.draft.value;
+    if (text === null) return;
     const step = this.steps.at(-1);
-    if (step && 'revise' in step.change) step.change = { revise: text };
+    if (step && typeof step.change === 'object' && 'revise' in step.change) step.change = { revise: text };
     else this.enqueue({ change: { revise: text }, label: 'edit the text', group: 'text', base: null }).catch(() => {});
   }
 
   undo(): void {
     if (this.draft.value !== null) {
+      clearTimeout(this.calm);
+      this.calm = undefined;
       batch(() => {
         this.draft.value = null;
         this.refused.value = [];
       });
       return;
     }
-    void this.travel(-1);
+    this.travel(-1);
   }
 
   redo(): void {
-    void this.travel(1);
+    if (this.draft.value === null) this.travel(1);
   }
 
   /** Ends the picture as it is. */
@@ -223,12 +251,12 @@ export class Store {
     const surface = new Surface();
     if (options === null) surface.copy(this.surface);
     this.comparison.value = { label, surface, options };
-    if (this.outcome.value !== null) this.renderComparison();
+    if (this.outcome.value !== null || this.stopped.value) this.renderComparison();
   }
 
   private renderComparison(): void {
     const { value: comparison } = this.comparison;
-    if (comparison?.options == null) return;
+    if (comparison?.options == null || this.saving > 0) return;
     this.target = comparison.surface;
     comparison.surface.begin(...this.revision.value!.size);
     this.engine.render(comparison.options);
@@ -287,14 +315,34 @@ export class Store {
 
   /** A file with the picture as far as it has come. */
   async save(format: 'png' | 'exr'): Promise<Uint8Array<ArrayBuffer>> {
-    // The desk has the numbers of what was rendered last.
-    if (this.target !== this.surface) {
-      this.render();
-      await new Promise<void>((done) => {
-        const end = this.outcome.subscribe((outcome) => outcome && (done(), queueMicrotask(() => end())));
-      });
+    this.saving++;
+    try {
+      // The desk has the numbers of what was rendered last.
+      if (this.target !== this.surface) {
+        this.render();
+        await this.ended();
+      }
+      return await this.engine.save(format);
+    } finally {
+      this.saving--;
+      if (this.outcome.value !== null) this.renderComparison();
     }
-    return this.engine.save(format);
+  }
+
+  /** The numbers of a part of the picture, as far as they are at hand. */
+  async values(x: number, y: number, width: number, height: number): Promise<Float64Array | null> {
+    return this.target === this.surface ? this.engine.ask({ ask: 'values', x, y, width, height }) : null;
+  }
+
+  /** When the picture is finished or stopped. */
+  private ended(): Promise<void> {
+    return new Promise((done) => {
+      const end = effect(() => {
+        if (this.outcome.value === null && !this.stopped.value) return;
+        done();
+        queueMicrotask(() => end());
+      });
+    });
   }
 
   /** Ends whatever takes long: the engine is started anew with the scene as it was. */
@@ -311,26 +359,51 @@ export class Store {
 
   private async run(): Promise<void> {
     this.running = true;
-    await this.start();
     for (let step = this.steps.shift(); step !== undefined; step = this.steps.shift()) {
+      await this.recovery;
       const slow = setTimeout(() => (this.busy.value = 'Reading the scene …'), 150);
       try {
-        this.show(await this.read(step), step);
+        await this.take(step);
         step.done();
         await this.firstPass();
       } catch (error) {
-        this.tell(error);
         step.failed(error as Error);
+        this.tell(error);
       } finally {
         clearTimeout(slow);
-        this.busy.value = null;
+        if (this.recovery === null) this.busy.value = null;
       }
     }
     this.running = false;
   }
 
-  private async read({ change, text }: Pick<Step, 'change' | 'text'>): Promise<Revision> {
+  private async take(step: Step): Promise<void> {
+    const { change } = step;
+    if (typeof change === 'number') {
+      const version = this.history.peek(change);
+      if (version === undefined) return;
+      const { base, text, label } = version;
+      const revision = await this.read({ change: base === this.base.value ? { revise: text } : { open: base.given }, text });
+      this.history.move(change);
+      this.show(revision, { base, label, group: null });
+      return;
+    }
+    // Or what was written would be lost.
+    if ('edit' in change && this.draft.value !== null) {
+      const help = 'Mend it under “Source”, or undo what was written there.';
+      throw new Refusal([{ message: 'The text of the scene has an error, so that nothing else can be changed.', help }]);
+    }
+    this.show(await this.read({ ...step, change }), step);
+  }
+
+  private async read({ change, text }: { change: Change; text?: string }): Promise<Revision> {
+    const before = this.history.current;
+    // After a failure the engine is empty.
+    if (!this.isOpen && !('open' in change) && before) {
+      await this.read({ change: { open: before.base.given }, text: before.text });
+    }
     const revision = await this.engine.change(change);
+    this.isOpen = true;
     if ('open' in change) this.openedText = revision.text;
     return text === undefined || text === revision.text ? revision : this.engine.change({ revise: text });
   }
@@ -348,7 +421,7 @@ export class Store {
       this.history.record({ base, text: revision.text, label: step.label }, step.group);
       this.labels();
       const [width, height] = revision.size;
-      if (this.pinned.value && (this.pinned.value[0] >= width || this.pinned.value[1] >= height)) this.pinned.value = null;
+      for (const pixel of [this.pinned, this.hovered]) if (pixel.value && (pixel.value[0] >= width || pixel.value[1] >= height)) pixel.value = null;
       this.render();
     });
     this.explain();
@@ -366,21 +439,8 @@ export class Store {
     });
   }
 
-  private async travel(steps: -1 | 1): Promise<void> {
-    const version = this.history.peek(steps);
-    if (version === undefined || this.running) return;
-    this.running = true;
-    try {
-      const stays = version.base === this.base.value;
-      const change: Change = stays ? { revise: version.text } : { open: version.base.given };
-      const revision = await this.read({ change, text: version.text });
-      this.history.move(steps);
-      this.show(revision, { base: version.base, label: version.label, group: null });
-    } catch (error) {
-      this.tell(error);
-    }
-    this.running = false;
-    if (this.steps.length > 0) void this.run();
+  private travel(steps: -1 | 1): void {
+    this.enqueue({ change: steps, label: '', group: null, base: null }).catch(() => {});
   }
 
   private labels(): void {
@@ -401,7 +461,7 @@ export class Store {
       answered = question.number;
       const pixel = this.asked.value;
       try {
-        const tree = pixel && this.revision.value ? await this.engine.ask({ ask: 'explain', pixel }) : null;
+        const tree = pixel && this.revision.value && !this.quiet.value ? await this.engine.ask({ ask: 'explain', pixel }) : null;
         if (answered === question.number || tree !== null) this.tree.value = tree;
       } catch (error) {
         this.tree.value = null;
@@ -416,19 +476,31 @@ export class Store {
     else if (!(error instanceof Cancelled)) throw error;
   }
 
-  /** Starts the engine anew, with the last scene that worked. */
-  private async recover(message: string | null): Promise<void> {
+  /** Starts the engine anew, with the last scene that worked. One that fails twice stays closed until it is changed. */
+  private recover(message: string | null): Promise<void> {
+    this.recovery ??= this.startAgain(message).finally(() => (this.recovery = null));
+    return this.recovery;
+  }
+
+  private async startAgain(message: string | null): Promise<void> {
     this.busy.value = 'Starting the engine again …';
-    await this.engine.restart();
     const version = this.history.current;
+    const again = message !== null && version === this.failed;
+    this.failed = message === null ? undefined : version;
     try {
-      if (version !== undefined) {
+      this.isOpen = false;
+      await this.engine.restart();
+      if (version !== undefined && !again) {
         const revision = await this.read({ change: { open: version.base.given }, text: version.text });
         this.show(revision, { base: version.base, label: version.label, group: null });
       }
-      if (message !== null) this.refused.value = [{ message: `The engine had to start again: ${message}.` }];
+      if (message !== null) {
+        const help = again ? 'Undo, or change the scene.' : 'It goes on with the scene as it was.';
+        this.refused.value = [{ message: `The engine had to start again: ${message}.`, help }];
+      }
+      this.stopped.value = again;
     } catch (error) {
-      this.broken.value = message ?? String(error);
+      this.tell(error);
     }
     this.busy.value = null;
   }

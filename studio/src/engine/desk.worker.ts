@@ -40,8 +40,14 @@ function hear(message: ToDesk): void {
 
 function gather(number: number, options: PictureOptions): void {
   picture = -1;
-  session!.gather(JSON.stringify(options));
-  picture = number;
+  try {
+    session!.gather(JSON.stringify(options));
+    picture = number;
+  } catch (error) {
+    const findings = findingsOf(error);
+    if (findings === null) throw error;
+    tell({ tell: 'refused', picture: number, findings });
+  }
 }
 
 function reply(id: number, question: Question): void {

@@ -22,6 +22,8 @@ export interface EngineEvents {
   patches(patches: Patch[], covered: boolean): void;
   progress(pixels: number, rays: number): void;
   finished(outcome: Answers['outcome']): void;
+  /** There will be no such picture: it is too large. */
+  refused(findings: Finding[]): void;
   /** A worker has failed; all of them are gone, and `restart` makes new ones. */
   broken(message: string): void;
 }
@@ -66,23 +68,38 @@ export class Engine {
   private coarsest = 4;
   private geometry = new Map<string, Geometry>();
   private collecting: (() => void) | null = null;
+  private started: Promise<void> | null = null;
 
   constructor(
     private readonly events: EngineEvents,
     readonly threads = Math.max(1, Math.min(MOST_RENDERERS, navigator.hardwareConcurrency || 2)),
   ) {}
 
-  /** Loads the module and starts the workers. */
-  async start(): Promise<void> {
-    this.module ??= load(new URL(wasmUrl, document.baseURI).href);
+  /** Loads the module and starts the workers, unless they are there. */
+  start(): Promise<void> {
+    this.started ??= this.startWorkers().catch((error: unknown) => {
+      this.started = null;
+      throw error;
+    });
+    return this.started;
+  }
+
+  private async startWorkers(): Promise<void> {
+    // One that could not be loaded is tried again.
+    this.module ??= load(new URL(wasmUrl, document.baseURI).href).catch((error: unknown) => {
+      this.module = null;
+      throw error;
+    });
     const module = await this.module;
     this.desk = new Worker(new URL('./desk.worker.ts', import.meta.url), { type: 'module', name: 'desk' });
     this.desk.onmessage = ({ data }: MessageEvent<FromDesk>) => this.hearDesk(data);
+    this.desk.onerror = (event) => this.broken(event.message || 'a part of the page could not be loaded');
     this.tellDesk({ do: 'start', module });
     this.renderers = Array.from({ length: this.threads }, (_, index) => {
       const worker = new Worker(new URL('./renderer.worker.ts', import.meta.url), { type: 'module', name: `renderer ${index + 1}` });
       const renderer: Renderer = { worker, covered: false, finished: false, collected: false, pixels: 0, rays: 0 };
       worker.onmessage = ({ data }: MessageEvent<FromRenderer>) => this.hear(renderer, data);
+      worker.onerror = (event) => this.broken(event.message || 'a part of the page could not be loaded');
       const started: ToRenderer = { do: 'start', module, share: [index, this.threads] };
       worker.postMessage(started);
       return renderer;
@@ -90,13 +107,14 @@ export class Engine {
   }
 
   /** Ends what is under way, whatever it is; the scene has to be opened again. */
-  async restart(): Promise<void> {
+  restart(): Promise<void> {
     this.end();
-    await this.start();
+    return this.start();
   }
 
   /** Changes the scene. Rejects with a `Refusal`, and then everything is as it was. */
   async change(change: Change): Promise<Revision & { view: ViewScene }> {
+    await this.start();
     // Renderers go on with the picture before if this is refused.
     const revision = this.ask({ ask: 'change', change });
     for (const { worker } of this.renderers) worker.postMessage({ do: 'change', change } satisfies ToRenderer);
@@ -105,7 +123,9 @@ export class Engine {
 
   /** Renders the scene. What was under way is dropped. */
   render(options: PictureOptions = {}): void {
+    if (this.renderers.length === 0) return;
     this.picture++;
+    this.collecting?.();
     this.begun = performance.now();
     this.tellDesk({ do: 'gather', picture: this.picture, options });
     for (const renderer of this.renderers) {
@@ -122,6 +142,7 @@ export class Engine {
 
   /** Asks the desk. Rejects with a `Refusal`. */
   ask<Q extends Question>(question: Q): Promise<Answers[Q['ask']]> {
+    if (this.renderers.length === 0) return Promise.reject(new Cancelled('the engine is not running'));
     const id = ++this.questions;
     return new Promise((resolve, reject) => {
       this.waiting.set(id, { resolve: resolve as Waiting['resolve'], reject });
@@ -131,7 +152,12 @@ export class Engine {
 
   /** A file with the picture as far as it has come. */
   async save(format: 'png' | 'exr'): Promise<Uint8Array<ArrayBuffer>> {
-    if (this.renderers.some(({ finished }) => !finished)) await this.collect();
+    let picture: number;
+    do {
+      picture = this.picture;
+      if (this.renderers.some(({ finished }) => !finished)) await this.collect();
+      // If another picture was begun meanwhile, it is that one.
+    } while (picture !== this.picture);
     return this.ask({ ask: format });
   }
 
@@ -149,6 +175,7 @@ export class Engine {
   private hear(renderer: Renderer, message: FromRenderer): void {
     if (message.tell === 'broken') return this.broken(message.message);
     if (message.picture !== this.picture) return;
+    if (message.tell === 'refused') return this.refuse(message.findings);
     switch (message.tell) {
       case 'patches': {
         const covered = this.covered;
@@ -188,12 +215,17 @@ export class Engine {
   }
 
   private async finish(picture: number): Promise<void> {
-    const outcome = await this.ask({ ask: 'outcome', picture });
-    if (picture === this.picture) this.events.finished(outcome);
+    try {
+      const outcome = await this.ask({ ask: 'outcome', picture });
+      if (picture === this.picture) this.events.finished(outcome);
+    } catch (error) {
+      if (!(error instanceof Cancelled)) throw error;
+    }
   }
 
   private hearDesk(message: FromDesk): void {
     if (message.tell === 'broken') return this.broken(message.message);
+    if (message.tell === 'refused') return message.picture === this.picture ? this.refuse(message.findings) : undefined;
     const waiting = this.waiting.get(message.id);
     this.waiting.delete(message.id);
     if (message.tell === 'answer') waiting?.resolve(message.answer);
@@ -212,6 +244,13 @@ export class Engine {
     return revision;
   }
 
+  private refuse(findings: Finding[]): void {
+    // All workers say the same.
+    this.picture++;
+    this.stop();
+    this.events.refused(findings);
+  }
+
   private broken(message: string): void {
     this.end();
     this.events.broken(message);
@@ -219,6 +258,9 @@ export class Engine {
 
   private end(): void {
     this.picture++;
+    this.started = null;
+    this.collecting?.();
+    this.collecting = null;
     this.desk?.terminate();
     for (const { worker } of this.renderers) worker.terminate();
     this.renderers = [];

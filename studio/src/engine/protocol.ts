@@ -102,6 +102,9 @@ export type FromRenderer =
   /** With what was traced, for the desk alone. */
   | { tell: 'finished'; picture: number; statistics: string }
   | { tell: 'collected'; picture: number }
+  /** There will be no such picture. */
+  | { tell: 'refused'; picture: number; findings: Finding[] }
+  /** The instance is of no use any more. */
   | { tell: 'broken'; message: string };
 
 export type ToDesk =
@@ -140,4 +143,5 @@ export interface Answers {
 export type FromDesk =
   | { tell: 'answer'; id: number; answer: Answers[Question['ask']] }
   | { tell: 'refusal'; id: number; findings: Finding[] }
+  | { tell: 'refused'; picture: number; findings: Finding[] }
   | { tell: 'broken'; message: string };

@@ -33,8 +33,7 @@ function hear(message: ToRenderer): void {
       change(message.change);
       break;
     case 'render':
-      work = new Work(message.picture, message.options, message.coarsest);
-      work.goOn();
+      render(message.picture, message.options, message.coarsest);
       break;
     case 'stop':
       work = null;
@@ -42,6 +41,18 @@ function hear(message: ToRenderer): void {
     case 'collect':
       if (work?.picture === message.picture) work.handOver();
       tell({ tell: 'collected', picture: message.picture });
+  }
+}
+
+function render(picture: number, options: PictureOptions, coarsest: number): void {
+  work = null;
+  try {
+    work = new Work(picture, options, coarsest);
+    work.goOn();
+  } catch (error) {
+    const findings = findingsOf(error);
+    if (findings === null) throw error;
+    tell({ tell: 'refused', picture, findings });
   }
 }
 
@@ -132,8 +143,7 @@ function guarded(act: () => void): void {
     act();
   } catch (error) {
     work = null;
-    const findings = findingsOf(error);
-    tell({ tell: 'broken', message: findings ? findings.map(({ message }) => message).join('\n') : brokenBy(error) });
+    tell({ tell: 'broken', message: brokenBy(error) });
   }
 }
 

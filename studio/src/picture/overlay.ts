@@ -103,9 +103,9 @@ export class Overlay {
     if (this.wanted === key) return;
     this.wanted = key;
     const [x, y, width, height] = rect;
-    this.store.engine.ask({ ask: 'values', x, y, width, height }).then(
+    this.store.values(x, y, width, height).then(
       (numbers) => {
-        if (this.wanted !== key) return;
+        if (this.wanted !== key || numbers === null) return;
         this.values = { key, rect, numbers };
         this.draw(zoom);
       },

@@ -108,9 +108,8 @@ function join(first: Step, second: Step): Step | null {
   return null;
 }
 
-/** Numbers as the text has them: what is zero there is nothing. */
 function isNothing(step: Step): boolean {
-  if ('move' in step) return step.move.every((value) => Math.abs(value) < 1e-12);
+  if ('move' in step) return step.move.every((value) => value === 0);
   return 'rotate' in step ? step.rotate.degrees === 0 : step.scale.every((value) => value === 1);
 }
 
@@ -125,5 +124,9 @@ function stepText(step: Step): string {
 }
 
 function sum(first: Vec3, second: Vec3): Vec3 {
-  return first.map((value, at) => value + second[at]!) as Vec3;
+  return first.map((value, at) => {
+    const sum = value + second[at]!;
+    // The noise of numbers that cancel is nothing, in any unit.
+    return Math.abs(sum) < 1e-12 * Math.abs(value) ? 0 : sum;
+  }) as Vec3;
 }

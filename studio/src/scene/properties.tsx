@@ -205,7 +205,9 @@ function MaterialValues({ store, name, scene }: { store: Store; name: string; sc
 
 function Presets({ store, of, label, material, optics }: { store: Store; of: string; label: string; material: Material; optics: boolean }) {
   const edit = useEdit({ store, of, label: 'preset' });
-  const taken = (keys: string[]): Edit[] => keys.filter((key) => key in material).map((key) => [`${of}.${key}`, null]);
+  // What the text leaves out cannot be taken away, but what has just been written can.
+  const taken = (keys: string[]): Edit[] =>
+    keys.flatMap((key): Edit[] => (key === 'eta' ? [[`${of}.eta`, '1'], [`${of}.eta`, null]] : key in material ? [[`${of}.${key}`, null]] : []));
   const chosen = PRESETS.find(({ glass, eta }) => (material.glass != null ? glass === material.glass : Math.abs(eta - (material.eta ?? 1)) < 1e-9));
   const choose = (name: string) => {
     const preset = PRESETS.find((one) => one.name === name);

@@ -4,9 +4,6 @@ import { effect } from '@preact/signals';
 import { useEffect, useRef } from 'preact/hooks';
 import type { Store } from '../store';
 
-/** Milliseconds without a key before the text is read. */
-const CALM = 250;
-
 export function SourcePanel({ store }: { store: Store }) {
   const place = useRef<HTMLDivElement>(null);
   useEffect(() => {
@@ -18,19 +15,14 @@ export function SourcePanel({ store }: { store: Store }) {
       // Without them only their completion is missing.
       () => {},
     );
+    const failed = () => place.current?.append('The editor could not be loaded: is this page offline? The scene goes on without it.');
     // Only who looks at the text needs its editor, which is as large as the rest of the page.
     void import('./editor').then(({ SourceEditor }) => {
       if (gone) return;
-      let waiting: ReturnType<typeof setTimeout> | undefined;
       const editor = new SourceEditor(place.current!, {
         text: store.draft.value ?? store.revision.value?.text ?? '',
         label: 'Source of the scene, in TOML',
-        onChange(text) {
-          // At once: an earlier text that is read meanwhile must not take the place of this one.
-          store.draft.value = text;
-          clearTimeout(waiting);
-          waiting = setTimeout(() => store.revise(text), CALM);
-        },
+        onChange: (text) => store.write(text),
         onHistory: (step) => (step === 'undo' ? store.undo() : store.redo()),
         known: () => ({ glasses, files: filesOf(store) }),
       });
@@ -46,11 +38,11 @@ export function SourcePanel({ store }: { store: Store }) {
         effect(() => editor.setTheme(store.theme.value === 'dark' || (store.theme.value === 'auto' && dark.matches) ? 'dark' : 'light')),
       ];
       end = () => {
-        clearTimeout(waiting);
+        store.readDraft();
         for (const one of ends) one();
         editor.dispose();
       };
-    });
+    }, failed);
     return () => {
       gone = true;
       end();
