@@ -4,7 +4,7 @@ import type { ReadonlySignal } from '@preact/signals';
 import { useSignal, useSignalEffect } from '@preact/signals';
 import { useEffect, useRef } from 'preact/hooks';
 import type { Comparison, Store } from '../store';
-import type { Zoom } from './zoom';
+import { lay, type Zoom } from './zoom';
 
 export function ComparisonSlider({ store, comparison, zoom }: { store: Store; comparison: Comparison; zoom: ReadonlySignal<Zoom> }) {
   /** How much of the box's width shows the other picture. */
@@ -14,10 +14,7 @@ export function ComparisonSlider({ store, comparison, zoom }: { store: Store; co
   useEffect(() => {
     place.current!.replaceChildren(canvas);
   }, [canvas]);
-  useSignalEffect(() => {
-    const { scale, x, y } = zoom.value;
-    canvas.style.transform = `translate(${x}px, ${y}px) scale(${scale})`;
-  });
+  useSignalEffect(() => lay(canvas, zoom.value));
   const stop = (event: Event) => event.stopPropagation();
   const drag = (event: PointerEvent) => {
     stop(event);

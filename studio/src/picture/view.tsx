@@ -8,7 +8,7 @@ import type { Pixel, Store } from '../store';
 import { ComparisonSlider } from './comparison';
 import { dragged } from './drag';
 import { Overlay } from './overlay';
-import { fit, panBy, pixelAt, type Zoom, zoomAbout } from './zoom';
+import { fit, lay, panBy, pixelAt, type Zoom, zoomAbout } from './zoom';
 
 /** Pixels of the screen that a pointer may move between down and up in a click. */
 const CLICK = 4;
@@ -60,8 +60,7 @@ export function PictureView({ store }: { store: Store }) {
     if (store.revision.value && !free.current) fitted();
   });
   useSignalEffect(() => {
-    const { scale, x, y } = zoom.value;
-    store.surface.canvas.style.transform = `translate(${x}px, ${y}px) scale(${scale})`;
+    lay(store.surface.canvas, zoom.value);
     void [store.frame.value, store.asked.value, store.pinned.value, store.sighting.value, store.branch.value];
     overlay.current?.draw(zoom.value);
   });

@@ -28,7 +28,16 @@ test('something that is called like the number of another is not mistaken for it
 
 test('a move has no noise in its digits', () => {
   expect(editsFor(named('sphere 1'), { kind: 'move', by: [0.2, 0, 0] }, [0.1, 0.2, 0.3])).toEqual([['sphere.1.center', '[0.3, 0.2, 0.3]']]);
-  expect(editsFor(named('sphere 1'), { kind: 'move', by: [0, 0, 0] }, [0, 0, 0])).toEqual([]);
+});
+
+// The edits of a drag replace each other: were there none at its start, the last but one would stay.
+test('a drag that ends where it began leaves everything as it was', () => {
+  const before = [['sphere."a \\"b\\"".transform', '[{ move = [1, 0, 0] }]']];
+  expect(editsFor(named('sphere 1'), { kind: 'move', by: [0, 0, 0] }, [0.1, 0.2, 0.3])).toEqual([['sphere.1.center', '[0.1, 0.2, 0.3]']]);
+  expect(editsFor(named('sphere 1'), { kind: 'scale', by: 1 }, [0.1, 0.2, 0.3])).toEqual([['sphere.1.radius', '2']]);
+  expect(editsFor(named('a "b"'), { kind: 'move', by: [0, 0, 0] }, [1, 0, 0])).toEqual(before);
+  expect(editsFor(named('a "b"'), { kind: 'turn', axis: [1, 0, 0], degrees: 0 }, [0, 0, 0])).toEqual(before);
+  expect(editsFor(named('a "b"'), { kind: 'scale', by: [1, 1, 1] }, [0, 0, 0])).toEqual(before);
 });
 
 test('what has been placed by steps is moved by its last one', () => {

@@ -4,7 +4,10 @@ import type { Change } from 'snell-viewer';
 import type { Edit } from '../engine/protocol';
 import { numberText, type SceneObject, type Vec3, vectorText } from './objects';
 
-/** `center` is the middle of the object before the movement. Nothing for what cannot be done to it. */
+/**
+ * `center` is the middle of the object before the movement. Nothing for what cannot be done to it; but a movement by nothing is one:
+ * a drag may end where it began.
+ */
 export function editsFor(object: SceneObject, movement: Change, center: Vec3): Edit[] {
   switch (movement.kind) {
     case 'move':
@@ -19,7 +22,6 @@ export function editsFor(object: SceneObject, movement: Change, center: Vec3): E
 type Step = { move: Vec3 } | { rotate: { axis: Vec3; degrees: number } } | { scale: Vec3 };
 
 function move(object: SceneObject, by: Vec3): Edit[] {
-  if (by.every((value) => value === 0)) return [];
   const { key } = object;
   if (object.kind === 'camera') return [[`${key}.eye`, vectorText(sum(object.data.eye as Vec3, by))]];
   if (object.kind === 'target') return [[`${key}.look_at`, vectorText(sum(object.data.look_at as Vec3, by))]];
@@ -44,14 +46,14 @@ function move(object: SceneObject, by: Vec3): Edit[] {
 }
 
 function turn(object: SceneObject, axis: Vec3, degrees: number, center: Vec3): Edit[] {
-  if (degrees === 0 || !isShape(object)) return [];
+  if (!isShape(object)) return [];
   // A sphere looks the same from all sides, unless it carries a picture.
   return [placed(object, joined(stepsOf(object), about(center, { rotate: { axis, degrees } })))];
 }
 
 function scale(object: SceneObject, by: number | Vec3, center: Vec3): Edit[] {
   const all = typeof by === 'number' ? by : null;
-  if (all === 1 || !isShape(object)) return [];
+  if (!isShape(object)) return [];
   const { key } = object;
   if (all !== null && stepsOf(object).length === 0) {
     switch (object.kind) {
@@ -86,6 +88,7 @@ function about(center: Vec3, step: Step): Step[] {
 function joined(before: Step[], more: Step[]): Step[] {
   const steps = [...before];
   for (const step of more) {
+    if (isNothing(step)) continue;
     const last = steps.at(-1);
     const one = last === undefined ? null : join(last, step);
     if (one === null) {
