@@ -10,7 +10,7 @@ import { PictureView } from './picture/view';
 import { Properties } from './scene/properties';
 import { type Space, SpaceView } from './scene/view';
 import { SourcePanel } from './source/panel';
-import { follow, openFirst } from './start';
+import { follow, openFirst, openWork } from './start';
 import { Status } from './status';
 import { WorkStorage } from './storage';
 import { Store } from './store';
@@ -23,7 +23,7 @@ import { Welcome } from './tour/welcome';
 
 export function App() {
   const store = useMemo(() => new Store(), []);
-  const storage = useMemo(() => new WorkStorage((words) => (store.refused.value = [{ message: words }])), []);
+  const storage = useMemo(() => new WorkStorage((words) => (store.notes.value = [...store.notes.value, { message: words }])), []);
   const [space, setSpace] = useState<Space | null>(null);
   const tab = useSignal('why');
   const gallery = useSignal(false);
@@ -35,7 +35,10 @@ export function App() {
     // For tests, and for the curious.
     Object.assign(window, { snell: store });
     void begin(store, storage).then((isNew) => (welcome.value = isNew));
-    const moved = () => (fragment.value = location.hash);
+    const moved = () => {
+      fragment.value = location.hash;
+      if (location.hash.length > 1 && !isLesson(location.hash)) void openFirst(store, storage, location.hash);
+    };
     window.addEventListener('hashchange', moved);
     const keys = (event: KeyboardEvent) => shortcut(event, store);
     window.addEventListener('keydown', keys);
@@ -57,13 +60,16 @@ export function App() {
   const step = stepOf(fragment.value);
   const exercise = exerciseOf(fragment.value);
   const go = (to: string) => {
+    // The scene of a lesson is not one's work, which is kept for afterwards.
+    void storage.flush();
     location.hash = to;
     welcome.value = false;
     tab.value = 'why';
   };
   const end = () => {
-    history.replaceState(null, '', location.pathname + location.search);
+    plainAddress();
     fragment.value = '';
+    void storage.load().then((work) => (work ? openWork(store, work) : undefined));
   };
 
   return (
@@ -117,15 +123,26 @@ async function begin(store: Store, storage: WorkStorage): Promise<boolean> {
     follow(store, 'live');
     return false;
   }
-  const special = stepOf(location.hash) !== null || exerciseOf(location.hash) !== null;
-  // The tour opens its scenes itself.
-  const { isNew } = special ? { isNew: false } : await openFirst(store, storage, location.hash);
+  // A lesson opens its scenes itself.
+  const { isNew } = isLesson(location.hash) ? { isNew: false } : await openFirst(store, storage, location.hash);
+  let opened = { base: store.base.value, text: store.revision.value?.text };
   effect(() => {
     const [base, revision] = [store.base.value, store.revision.value];
-    if (base === null || revision === null) return;
+    if (base === null || revision === null || isLesson(location.hash)) return;
+    if (base !== opened.base) opened = { base, text: revision.text };
+    // Once it is changed, the scene is not that of the address any more: a reload must not bring that one back.
+    if (revision.text !== opened.text && location.hash !== '') plainAddress();
     storage.save({ name: base.name, text: revision.text, files: 'files' in base.given ? base.given.files : [] });
   });
   return isNew;
+}
+
+function isLesson(fragment: string): boolean {
+  return stepOf(fragment) !== null || exerciseOf(fragment) !== null;
+}
+
+function plainAddress(): void {
+  history.replaceState(null, '', location.pathname + location.search);
 }
 
 function shortcut(event: KeyboardEvent, store: Store): void {

@@ -91,9 +91,8 @@ export function Header({ store, storage, openGallery, openFiles, startTour, star
                 const base = store.base.value!;
                 const files = 'files' in base.given ? base.given.files : [];
                 const fragment = await encode({ name: base.name, text: store.revision.value!.text, files });
-                history.replaceState(null, '', fragment);
-                await copy(location.href);
-                say('The link is copied, and in the address bar');
+                await copy(new URL(fragment, location.href).href);
+                say('The link is copied');
               }),
           },
           copied('command', () => asCommand(scene())),

@@ -16,15 +16,16 @@ export async function openFirst(store: Store, storage: WorkStorage, fragment: st
       await openWork(store, { files: [], ...shared });
       return { isNew: false };
     }
-    const name = decodeURIComponent(fragment.slice(1));
+    const name = nameIn(fragment);
     if (SCENES.some((scene) => scene.name === name)) {
-      await store.open({ name, given: { builtin: name } });
+      await store.open(builtin(name));
       return { isNew: false };
     }
+    if (name !== '') store.notes.value = [{ message: `There is no built-in scene called “${name}”, as the address has it.` }];
   } catch (error) {
     const finding: Finding = { message: error instanceof Error ? error.message : String(error) };
-    await store.open(builtin(FIRST));
-    store.refused.value = [finding];
+    store.notes.value = [finding];
+    if (store.revision.value === null) await store.open(builtin(FIRST));
     return { isNew: false };
   }
   const work = await storage.load();
@@ -34,7 +35,7 @@ export async function openFirst(store: Store, storage: WorkStorage, fragment: st
       return { isNew: false };
     } catch {
       await store.open(builtin(FIRST));
-      store.refused.value = [{ message: `The work of the last time, ${work.name}, could not be opened again.` }];
+      store.notes.value = [{ message: `The work of the last time, ${work.name}, could not be opened again.` }];
       return { isNew: false };
     }
   }
@@ -45,8 +46,18 @@ export async function openFirst(store: Store, storage: WorkStorage, fragment: st
 /** A scene with its text: a built-in one stays one, so that its bits can be compared. */
 export function openWork(store: Store, { name, text, files }: { name: string; text: string; files: [string, Uint8Array][] }): Promise<void> {
   if (files.length === 0 && SCENES.some((scene) => scene.name === name)) return store.open(builtin(name), { text });
-  const given: Given = { name: /\.\w+$/.test(name) ? name : `${name}.toml`, text: new TextEncoder().encode(text), files };
-  return store.open({ name, given });
+  // Whatever it was made of: the text is TOML.
+  const file = `${name.replace(/\.(toml|nff|json|txt)$/i, '')}.toml`;
+  const given: Given = { name: file, text: new TextEncoder().encode(text), files };
+  return store.open({ name: file, given });
+}
+
+function nameIn(fragment: string): string {
+  try {
+    return decodeURIComponent(fragment.slice(1));
+  } catch {
+    return fragment.slice(1);
+  }
 }
 
 function builtin(name: string): Base {

@@ -11,14 +11,22 @@ export function Status({ store }: { store: Store }) {
   const { pixels, total, rays, time } = store.progress.value;
   const outcome = store.outcome.value;
   const [width, height] = store.revision.value?.size ?? [0, 0];
-  const refused = store.refused.value;
+  const refused = [...store.notes.value, ...store.refused.value];
+  const broken = store.broken.value;
   const warnings = store.warnings.value;
   return (
     <footer class="status">
+      {broken !== null && (
+        <div class="refused" role="alert">
+          <p>
+            The engine could not be started: {broken}. <button type="button" onClick={() => location.reload()}>Load the page again</button>
+          </p>
+        </div>
+      )}
       {refused.length > 0 && (
         <div class="refused" role="alert">
           <Findings findings={refused} />
-          <button type="button" class="plain" aria-label="Close this message" onClick={() => (store.refused.value = [])}>
+          <button type="button" class="plain" aria-label="Close this message" onClick={() => ([store.refused.value, store.notes.value] = [[], []])}>
             ✕
           </button>
         </div>

@@ -279,6 +279,17 @@ export class Store {
     this.selectedName.value = object === null || typeof object === 'string' ? object : object.name;
   }
 
+  /** The object that is seen first at a pixel. */
+  async seenAt(pixel: Pixel | null): Promise<string | null> {
+    try {
+      const tree = pixel && (await this.engine.ask({ ask: 'explain', pixel }));
+      return tree?.samples[0]?.nodes[0]?.hit?.object ?? null;
+    } catch {
+      // Then it cannot be dragged, and a click on it says why.
+      return null;
+    }
+  }
+
   async find(object: string | null): Promise<void> {
     this.sighting.value = null;
     if (object === null) return;

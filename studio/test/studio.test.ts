@@ -143,6 +143,75 @@ test('with one worker and with three the film is the same', async () => {
   }
 });
 
+test('places of exercises are graded when asked, and nothing tells the answer before', () =>
+  on('#exercise/leaves', async (page) => {
+    await page.getByText('Click the place in the picture').waitFor();
+    await finished(page);
+    const asked = await placeOf(page, [300, 180]);
+    await page.mouse.move(asked.x, asked.y);
+    await page.waitForTimeout(300);
+    expect(await page.evaluate(() => window.snell.tree.value)).toBe(null);
+    await page.getByRole('button', { name: 'Check' }).click();
+    await page.getByText('Choose an answer first.').waitFor();
+    await page.mouse.click(asked.x, asked.y);
+    await page.getByRole('button', { name: 'Check' }).click();
+    // A ray that went straight on would leave at the pixel where it came in.
+    await page.getByText('✗ Not quite.').waitFor();
+  }));
+
+test('a pinned pixel does not keep things from being dragged', () =>
+  on('#lecture/default', async (page) => {
+    await finished(page);
+    const elsewhere = await placeOf(page, [10, 10]);
+    await page.mouse.click(elsewhere.x, elsewhere.y);
+    const from = await placeOf(page, [256, 256]);
+    await page.mouse.move(from.x, from.y);
+    await page.mouse.down();
+    for (let step = 1; step <= 8; step++) await page.mouse.move(from.x + 5 * step, from.y);
+    await page.waitForFunction(() => window.snell.revision.value!.scene.sphere![0]!.center[0] > 51);
+    await page.mouse.up();
+  }));
+
+test('the own scene is still there after the tour, and after a reload', () =>
+  on('#lecture/default', async (page) => {
+    await finished(page);
+    await page.evaluate(() => window.snell.edit([['material.glass.eta', '1.77']], { label: 'test' }));
+    await page.waitForFunction(() => window.snell.revision.value!.scene.material!.glass!.eta === 1.77);
+    await page.getByRole('button', { name: 'Learn' }).click();
+    await page.getByRole('menuitem', { name: /Tour/ }).click();
+    await page.getByRole('heading', { name: 'Four spheres' }).waitFor();
+    await page.waitForFunction(() => window.snell.revision.value!.scene.material!.glass!.eta === 2);
+    await page.getByRole('button', { name: 'Leave the tour' }).click();
+    await page.waitForFunction(() => window.snell.revision.value!.scene.material!.glass!.eta === 1.77);
+    await page.reload();
+    await page.waitForFunction(() => window.snell?.revision.value?.scene.material!.glass!.eta === 1.77);
+  }));
+
+test('a picture too large for the memory is refused, and undo brings the one before', () =>
+  on('#lecture/default', async (page) => {
+    const before = await finished(page);
+    await page.evaluate(() => window.snell.edit([['render.size', '[60000, 60000]']], { label: 'test' }));
+    await page.getByRole('alert').waitFor();
+    await page.getByRole('button', { name: 'Undo' }).click();
+    await page.waitForFunction(() => window.snell.revision.value!.size[0] === 512);
+    expect(await finished(page)).toBe(before);
+  }));
+
+test('what is typed last counts, whatever is done right after it', () =>
+  on('#lecture/default', async (page) => {
+    await finished(page);
+    await page.getByRole('tab', { name: 'Source' }).click();
+    await page.locator('.cm-content').click();
+    await page.keyboard.press('Control+Home');
+    await page.keyboard.type('# mine');
+    await page.keyboard.press('Enter');
+    await page.getByRole('tab', { name: 'Scene' }).click();
+    await page.waitForFunction(() => window.snell.revision.value!.text.startsWith('# mine') && window.snell.draft.value === null);
+    for (const name of ['Undo', 'Redo']) await page.getByRole('button', { name }).click();
+    await page.waitForFunction(() => window.snell.undoLabel.value === 'edit the text');
+    expect(await text(page)).toMatch(/^# mine\n/);
+  }));
+
 test('a step of the tour is found with the tools', () =>
   on('#tour/5', async (page) => {
     await page.getByRole('heading', { name: 'Upside down' }).waitFor();

@@ -42,7 +42,7 @@ function Headline({ tree, pinned, unpin }: { tree: RayTreeDocument; pinned: bool
     <header class="headline">
       <span class="swatch" style={{ background: toHex(tree.color, tree.transfer) }} aria-hidden="true" />
       <div>
-        <p class="sentence">{tree.sentence}</p>
+        <p class="sentence">{prose(tree.sentence)}</p>
         <p class="quiet">
           Pixel {x}, {y}
           {tree.spp > 1 && ` · ${tree.spp} samples`} · {tree.color.map((value) => value.toPrecision(3)).join(', ')}
@@ -55,6 +55,14 @@ function Headline({ tree, pinned, unpin }: { tree: RayTreeDocument; pinned: bool
       )}
     </header>
   );
+}
+
+/** What stands between backticks are names; a number stays with its sign. */
+function prose(sentence: string) {
+  return sentence
+    .replaceAll(' %', '\u00a0%')
+    .split('`')
+    .map((part, at) => (at % 2 === 1 ? <b key={at}>{part}</b> : part));
 }
 
 function LightHere({ tree }: { tree: RayTreeDocument }) {

@@ -15,9 +15,11 @@ const CLICK = 4;
 const KEYS: Record<string, Pixel> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
 
 type Gesture =
-  | { kind: 'press'; x: number; y: number; pixel: Pixel | null }
+  | { kind: 'press'; x: number; y: number; pixel: Pixel | null; seen: Promise<string | null> }
+  /** What is seen where the pointer came down is not known yet. */
+  | { kind: 'wait' }
   | { kind: 'pan' }
-  | { kind: 'drag'; x: number; y: number; name: string; move(dx: number, dy: number): void }
+  | { kind: 'drag'; x: number; y: number; move(dx: number, dy: number): void }
   | { kind: 'pinch'; distance: number };
 
 export function PictureView({ store }: { store: Store }) {
@@ -74,11 +76,8 @@ export function PictureView({ store }: { store: Store }) {
     return pixelAt(zoom.value, x, y, size());
   };
 
-  /** What a drag that starts at this pixel moves: what is seen there first. */
-  const grip = (pixel: Pixel | null): ((dx: number, dy: number) => void) | null => {
-    const tree = store.tree.value;
-    if (!pixel || !tree || tree.pixel[0] !== pixel[0] || tree.pixel[1] !== pixel[1]) return null;
-    const name = tree.samples[0]?.nodes[0]?.hit?.object;
+  /** What a drag moves that begins where this is seen first. */
+  const grip = (name: string | null): ((dx: number, dy: number) => void) | null => {
     const object = store.objects.value.find((one) => one.name === name);
     const { view } = store.revision.value!;
     const place = object && placeOf(object, view);
@@ -101,7 +100,7 @@ export function PictureView({ store }: { store: Store }) {
     const pixel = pixelOf(event);
     if (event.pointerType !== 'mouse') store.hover(pixel);
     const pans = event.button === 1 || event.shiftKey;
-    gesture.current = pans ? { kind: 'pan' } : { kind: 'press', ...at(event), pixel };
+    gesture.current = pans ? { kind: 'pan' } : { kind: 'press', ...at(event), pixel, seen: store.seenAt(pixel) };
   };
 
   const move = (event: PointerEvent) => {
@@ -111,8 +110,13 @@ export function PictureView({ store }: { store: Store }) {
     pointers.current.set(event.pointerId, here);
     const state = gesture.current;
     if (state?.kind === 'press' && Math.hypot(here.x - state.x, here.y - state.y) > CLICK) {
-      const moves = grip(state.pixel);
-      gesture.current = moves ? { kind: 'drag', x: state.x, y: state.y, name: '', move: moves } : { kind: 'pan' };
+      const waits: Gesture = { kind: 'wait' };
+      gesture.current = waits;
+      void state.seen.then((name) => {
+        if (gesture.current !== waits) return;
+        const moves = grip(name);
+        gesture.current = moves ? { kind: 'drag', x: state.x, y: state.y, move: moves } : { kind: 'pan' };
+      });
     }
     switch (gesture.current?.kind) {
       case 'drag': {
@@ -186,7 +190,7 @@ export function PictureView({ store }: { store: Store }) {
     >
       {store.comparison.value && <ComparisonSlider store={store} comparison={store.comparison.value} zoom={zoom} />}
       <ZoomButtons
-        zoom={zoom.value.scale}
+        zoom={store.revision.value ? zoom.value.scale : 1}
         fit={() => {
           free.current = false;
           fitted();

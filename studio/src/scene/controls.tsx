@@ -46,15 +46,37 @@ interface NumberOf extends Of {
   instead?: string[];
 }
 
+/** With a decimal comma, too; `NaN` for what is none. */
+export function parsed(text: string): number {
+  const number = text.trim().replace(',', '.').replace('−', '-');
+  return number === '' ? NaN : Number(number);
+}
+
+/** A field that goes back to what the scene has when it is left: what was refused does not stay in it. */
+function NumberInput({ value, set, done, ...rest }: { value: number; set(value: number): void; done(): void; [attribute: string]: unknown }) {
+  return (
+    <input
+      class="number"
+      inputMode="decimal"
+      autocomplete="off"
+      value={numberText(value)}
+      onChange={(event) => {
+        const number = parsed(event.currentTarget.value);
+        if (Number.isFinite(number)) set(number);
+        done();
+      }}
+      onBlur={(event) => (event.currentTarget.value = numberText(value))}
+      {...rest}
+    />
+  );
+}
+
 /** A number with a slider. What is typed may lie beyond its ends; the engine says what it refuses. */
 export function Slider(of: NumberOf) {
   const id = useId();
   const { value, min = 0, max = 1, step = 0.01, instead = [] } = of;
   const edit = useEdit(of);
-  const change = (text: string) => {
-    if (text.trim() === '' || Number.isNaN(Number(text))) return;
-    edit.set(numberText(Number(text)), ...instead.map((key): Edit => [key, null]));
-  };
+  const set = (number: number) => edit.set(numberText(number), ...instead.map((key): Edit => [key, null]));
   return (
     <Row label={of.label} id={id}>
       <input
@@ -64,10 +86,11 @@ export function Slider(of: NumberOf) {
         max={Math.max(max, value)}
         step={step}
         value={value}
-        onInput={(event) => change(event.currentTarget.value)}
+        onInput={(event) => set(event.currentTarget.valueAsNumber)}
         onChange={edit.done}
+        onBlur={(event) => (event.currentTarget.value = String(value))}
       />
-      <input id={id} class="number" inputMode="decimal" value={numberText(value)} onChange={(event) => (change(event.currentTarget.value), edit.done())} />
+      <NumberInput id={id} value={value} set={set} done={edit.done} />
     </Row>
   );
 }
@@ -77,46 +100,27 @@ export function NumberField(of: NumberOf) {
   const edit = useEdit(of);
   return (
     <Row label={of.label} id={id}>
-      <input
-        id={id}
-        class="number"
-        type="number"
-        step={of.step ?? 'any'}
-        {...(of.min === undefined ? {} : { min: of.min })}
-        value={numberText(of.value)}
-        onInput={(event) => {
-          if (Number.isFinite(event.currentTarget.valueAsNumber)) edit.set(numberText(event.currentTarget.valueAsNumber));
-        }}
-        onChange={edit.done}
-      />
+      <NumberInput id={id} value={of.value} set={(number) => edit.set(numberText(number))} done={edit.done} />
     </Row>
   );
 }
 
 const AXES = ['x', 'y', 'z'];
 
-export function VectorField(of: Of & { value: readonly number[]; names?: string[]; step?: number; whole?: boolean }) {
+export function VectorField(of: Of & { value: readonly number[]; names?: string[] }) {
   const edit = useEdit(of);
+  const fields = useRef<HTMLDivElement>(null);
   const names = of.names ?? AXES;
+  const set = (at: number, number: number) => {
+    // What stands in the other fields may be newer than the scene.
+    const written = [...fields.current!.querySelectorAll('input')].map(({ value }) => parsed(value));
+    edit.set(vectorText(of.value.map((old, other) => (other === at ? number : Number.isFinite(written[other]) ? written[other]! : old))));
+  };
   return (
-    <div class="field vector" role="group" aria-label={of.label}>
+    <div class="field vector" role="group" aria-label={of.label} ref={fields}>
       <span class="field-label">{of.label}</span>
       {of.value.map((value, at) => (
-        <input
-          key={at}
-          class="number"
-          type="number"
-          step={of.step ?? 'any'}
-          aria-label={`${of.label}, ${names[at]}`}
-          title={names[at]}
-          value={numberText(value)}
-          onInput={(event) => {
-            const number = event.currentTarget.valueAsNumber;
-            if (!Number.isFinite(number)) return;
-            edit.set(vectorText(of.value.map((old, other) => (other === at ? number : old))));
-          }}
-          onChange={edit.done}
-        />
+        <NumberInput key={at} aria-label={`${of.label}, ${names[at]}`} title={names[at]} value={value} set={(number) => set(at, number)} done={edit.done} />
       ))}
     </div>
   );
@@ -141,18 +145,12 @@ export function ColorField(of: Of & { value: Rgb; transfer: 'linear' | 'srgb'; m
         onChange={edit.done}
       />
       {channels.map((value, at) => (
-        <input
+        <NumberInput
           key={at}
-          class="number"
-          inputMode="decimal"
           aria-label={`${of.label}, ${['red', 'green', 'blue'][at]}`}
-          value={numberText(value)}
-          onChange={(event) => {
-            const number = Number(event.currentTarget.value);
-            if (event.currentTarget.value.trim() === '' || !Number.isFinite(number)) return;
-            write(channels.map((old, other) => (other === at ? number : old)) as Vec3);
-            edit.done();
-          }}
+          value={value}
+          set={(number) => write(channels.map((old, other) => (other === at ? number : old)) as Vec3)}
+          done={edit.done}
         />
       ))}
     </div>

@@ -249,7 +249,7 @@ function Index({ store, of, material, optics }: { store: Store; of: string; mate
 /** A slider for a value that is mostly gray. One of a colour keeps its hue. */
 function GraySlider({ store, of, label, value }: { store: Store; of: string; label: string; value: Material['kr'] }) {
   if (typeof value === 'number' || value === undefined) return <Slider store={store} of={of} label={label} value={value ?? 0} />;
-  return <VectorField store={store} of={of} label={label} value={value} names={['red', 'green', 'blue']} step={0.01} />;
+  return <VectorField store={store} of={of} label={label} value={value} names={['red', 'green', 'blue']} />;
 }
 
 function whiteOf(value: NonNullable<Material['ko']>): number {
@@ -276,7 +276,7 @@ function PictureValues({ store, scene }: { store: Store; scene: SceneDocument })
       <Slider store={store} of="render.max_depth" label="Depth" value={render.max_depth ?? 32} min={0} max={32} step={1} />
       <Choice store={store} of="render.shadows" label="Shadows" value={render.shadows ?? (optics ? 'tinted' : 'opaque')} options={shadows} />
       <NumberField store={store} of="render.spp" label="Samples a pixel" value={render.spp ?? 1} min={1} step={1} />
-      <VectorField store={store} of="render.size" label="Size" value={render.size} names={['width', 'height']} step={1} />
+      <VectorField store={store} of="render.size" label="Size" value={render.size} names={['width', 'height']} />
       {camera.near != null && store.selected.value?.kind !== 'camera' && (
         <NumberField store={store} of="camera.near" label="Image plane" value={camera.near} />
       )}

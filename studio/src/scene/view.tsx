@@ -140,7 +140,7 @@ const HANDLES = [['move', 'Move'], ['turn', 'Turn'], ['scale', 'Scale']] as cons
 function SpaceTools({ store, space }: { store: Store; space: Space | null }) {
   const { lights } = store.revision.value!.view;
   const selected = store.selected.value;
-  const placed = lights.filter(({ position }) => position !== null);
+  const movable = selected !== null;
   return (
     <div class="space-tools">
       <div class="group" role="group" aria-label="Look">
@@ -170,18 +170,17 @@ function SpaceTools({ store, space }: { store: Store; space: Space | null }) {
           </select>
         )}
       </div>
-      {selected && (selected.kind !== 'light' || placed.some(({ name }) => name === selected.name)) && (
-        <div class="group" role="group" aria-label={`Handles of ${selected.name}`}>
-          {HANDLES.map(([value, title]) => (
-            <button type="button" key={value} aria-pressed={store.handles.value === value} onClick={() => (store.handles.value = value)}>
-              {title}
-            </button>
-          ))}
-          <label class="button">
-            <input type="checkbox" checked={store.snap.value !== null} onChange={(event) => (store.snap.value = event.currentTarget.checked ? 1 : null)} /> Snap
-          </label>
-        </div>
-      )}
+      {/* Always there, so that the drawing beneath does not jump when something is chosen. */}
+      <div class="group" role="group" aria-label={movable ? `Handles of ${selected!.name}` : 'Handles'}>
+        {HANDLES.map(([value, title]) => (
+          <button type="button" key={value} disabled={!movable} aria-pressed={movable && store.handles.value === value} onClick={() => (store.handles.value = value)}>
+            {title}
+          </button>
+        ))}
+        <label class="button">
+          <input type="checkbox" checked={store.snap.value !== null} onChange={(event) => (store.snap.value = event.currentTarget.checked ? 1 : null)} /> Snap
+        </label>
+      </div>
     </div>
   );
 }

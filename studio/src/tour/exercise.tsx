@@ -1,10 +1,10 @@
 /** An exercise beside the views: its rays are shown once there is an answer. */
 
-import { useSignal, useSignalEffect } from '@preact/signals';
+import { useSignal } from '@preact/signals';
 import type { RayTreeDocument } from 'snell-viewer';
 import { useEffect } from 'preact/hooks';
 import type { Pixel, Store } from '../store';
-import { type Exercise, EXERCISES, isRight } from './exercises';
+import { type Exercise, EXERCISES, isRight, numberIn } from './exercises';
 
 /** The exercise that a fragment names. */
 export function exerciseOf(fragment: string): Exercise | null {
@@ -16,10 +16,13 @@ export function ExerciseView({ store, exercise, go, end }: { store: Store; exerc
   const tree = useSignal<RayTreeDocument | null>(null);
   const given = useSignal('');
   const verdict = useSignal<boolean | null>(null);
+  const unclear = useSignal(false);
   useEffect(() => {
     let current = true;
     [tree.value, given.value, verdict.value] = [null, '', null];
     store.pin(null);
+    // Pointing at the picture would tell the answer.
+    store.quiet.value = true;
     const base = { name: exercise.scene, given: { builtin: exercise.scene } };
     void store
       .open(base, { label: `exercise: ${exercise.title.toLowerCase()}` })
@@ -28,19 +31,22 @@ export function ExerciseView({ store, exercise, go, end }: { store: Store; exerc
         if (current) tree.value = answer;
       })
       .catch(() => {});
-    return () => (current = false);
+    return () => {
+      current = false;
+      store.quiet.value = false;
+    };
   }, [exercise]);
 
-  const grade = (answer: string | Pixel) => {
-    const { view } = store.revision.value!;
-    verdict.value = isRight(exercise, tree.value!, view.camera, answer);
+  const guess = store.pinned.value;
+  const grade = () => {
+    const { kind } = exercise.answer;
+    const answer: string | Pixel | null = kind === 'place' ? guess : given.value;
+    unclear.value = answer === null || answer === '' || (kind === 'number' && Number.isNaN(numberIn(String(answer))));
+    if (unclear.value) return;
+    verdict.value = isRight(exercise, tree.value!, store.revision.value!.view.camera, answer!);
+    store.quiet.value = false;
     store.pin(exercise.pixel);
   };
-  useSignalEffect(() => {
-    const guess = store.pinned.value;
-    if (guess && tree.value && exercise.answer.kind === 'place' && verdict.value === null) grade(guess);
-  });
-
   const { value: asked } = tree;
   const next = EXERCISES[EXERCISES.indexOf(exercise) + 1];
   return (
@@ -50,12 +56,12 @@ export function ExerciseView({ store, exercise, go, end }: { store: Store; exerc
       </p>
       <h2 id="exercise-title">{exercise.title}</h2>
       {asked && <p>{exercise.question(asked)}</p>}
-      {asked && exercise.answer.kind !== 'place' && (
+      {asked && verdict.value === null && (
         <form
           class="group"
           onSubmit={(event) => {
             event.preventDefault();
-            if (given.value !== '') grade(given.value);
+            grade();
           }}
         >
           {exercise.answer.kind === 'number' ? (
@@ -66,6 +72,8 @@ export function ExerciseView({ store, exercise, go, end }: { store: Store; exerc
               value={given.value}
               onInput={(event) => (given.value = event.currentTarget.value)}
             />
+          ) : exercise.answer.kind === 'place' ? (
+            <output>{guess ? `Pixel ${guess.join(', ')}` : 'No place chosen yet'}</output>
           ) : (
             <select aria-label="Your answer" value={given.value} onChange={(event) => (given.value = event.currentTarget.value)}>
               <option value="">choose</option>
@@ -80,6 +88,7 @@ export function ExerciseView({ store, exercise, go, end }: { store: Store; exerc
         </form>
       )}
       <div role="status">
+        {unclear.value && <p>{exercise.answer.kind === 'number' ? 'A number is expected, like 12.5.' : 'Choose an answer first.'}</p>}
         {verdict.value !== null && asked && (
           <p class="answer">
             <b>{verdict.value ? '✓ Right. ' : '✗ Not quite. '}</b>
@@ -92,6 +101,7 @@ export function ExerciseView({ store, exercise, go, end }: { store: Store; exerc
           <button
             type="button"
             onClick={() => {
+              store.quiet.value = true;
               store.pin(null);
               verdict.value = null;
             }}

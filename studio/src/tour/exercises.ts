@@ -99,6 +99,11 @@ export function isRight(exercise: Exercise, tree: RayTreeDocument, camera: ViewC
     const [[x, y], [rightX, rightY]] = [given as [number, number], right as [number, number]];
     return Math.hypot(x + 0.5 - rightX, y + 0.5 - rightY) <= answer.tolerance * tree.size[0];
   }
-  const text = String(given).trim().replace(',', '.').replace('°', '');
-  return text !== '' && Math.abs(Number(text) - Number(right)) <= answer.tolerance;
+  return Math.abs(numberIn(String(given)) - Number(right)) <= answer.tolerance;
+}
+
+/** With a decimal comma and a unit, too; `NaN` for what is none. */
+export function numberIn(text: string): number {
+  const match = /^([-+]?(?:\d+(?:[.,]\d*)?|[.,]\d+))\s*(?:°|degrees?|deg)?$/.exec(text.trim());
+  return match ? Number(match[1]!.replace(',', '.')) : NaN;
 }
