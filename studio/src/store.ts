@@ -3,7 +3,7 @@
 import { batch, computed, effect, signal } from '@preact/signals';
 import type { RayTreeDocument } from 'snell-viewer';
 import { Cancelled, Engine, Refusal } from './engine/engine';
-import type { Answers, Change, Edit, Finding, Given, PictureOptions, Revision, Sighting } from './engine/protocol';
+import type { Answers, Change, CompleteRevision, Edit, Finding, Given, PictureOptions, Sighting } from './engine/protocol';
 import { History, type Version } from './history';
 import { Surface } from './picture/surface';
 import { objectsOf, type SceneObject } from './scene/objects';
@@ -46,6 +46,8 @@ export interface EditOptions {
   group?: string;
 }
 
+/** Milliseconds between the first pass of a picture and the next, while something is dragged. */
+const HOLD = 40;
 /** Milliseconds without a key before what was written is read. */
 const CALM = 250;
 
@@ -66,7 +68,7 @@ const PATIENCE = 400;
 
 export class Store {
   /** The scene that is shown; nothing before the first one. */
-  readonly revision = signal<Revision | null>(null);
+  readonly revision = signal<CompleteRevision | null>(null);
   readonly base = signal<Base | null>(null);
   /** What a person has written and the engine refuses; until it is mended or taken back, the views show the scene before. */
   readonly draft = signal<string | null>(null);
@@ -230,7 +232,7 @@ export class Store {
   }
 
   /** Renders the picture that is shown from the start. */
-  render(): void {
+  render(hold = 0): void {
     const { revision } = this;
     if (revision.value === null) return;
     this.target = this.surface;
@@ -238,7 +240,7 @@ export class Store {
     this.outcome.value = null;
     this.stopped.value = false;
     this.begun = performance.now();
-    this.engine.render();
+    this.engine.render({}, hold);
   }
 
   /** Lays the picture beside itself with other options, beside itself as it is now, or beside nothing. */
@@ -407,7 +409,7 @@ export class Store {
     this.show(await this.read({ ...step, change }), step);
   }
 
-  private async read({ change, text }: { change: Change; text?: string }): Promise<Revision> {
+  private async read({ change, text }: { change: Change; text?: string }): Promise<CompleteRevision> {
     const before = this.history.current;
     // After a failure the engine is empty.
     if (!this.isOpen && !('open' in change) && before) {
@@ -419,7 +421,7 @@ export class Store {
     return text === undefined || text === revision.text ? revision : this.engine.change({ revise: text });
   }
 
-  private show(revision: Revision, step: Pick<Step, 'base' | 'label' | 'group'>): void {
+  private show(revision: CompleteRevision, step: Pick<Step, 'base' | 'label' | 'group'>): void {
     batch(() => {
       const base = step.base ?? this.base.value!;
       // More may have been written meanwhile.
@@ -433,7 +435,8 @@ export class Store {
       this.labels();
       const [width, height] = revision.size;
       for (const pixel of [this.pinned, this.hovered]) if (pixel.value && (pixel.value[0] >= width || pixel.value[1] >= height)) pixel.value = null;
-      this.render();
+      // In the middle of a drag the next picture is near, and the page needs the time.
+      this.render(step.group === null ? 0 : HOLD);
     });
     this.explain();
   }

@@ -1,7 +1,7 @@
 /** Answers questions about the scene, and puts the picture together from what the renderers have made. */
 
 import { Session } from 'snell-wasm';
-import type { Answers, Finding, FromDesk, Geometry, PictureOptions, Question, Revision, Sighting, ToDesk } from './protocol';
+import type { Answers, DistributedView, Finding, FromDesk, Geometry, PictureOptions, Question, Revision, Sighting, ToDesk } from './protocol';
 import { brokenBy, changed, findingsOf, start } from './session';
 
 let session: Session | null = null;
@@ -9,6 +9,7 @@ let session: Session | null = null;
 let picture = -1;
 /** Those that the page has been told of, and still needs. */
 let geometry = new Set<string>();
+let viewText = '';
 
 self.onmessage = ({ data }: MessageEvent<ToDesk>) => {
   try {
@@ -102,10 +103,14 @@ function revision(session: Session): Revision {
 
 /** Corners and faces come as arrays of numbers, which are handed over much faster than JSON, and only once. */
 function sceneOf(session: Session): Pick<Revision, 'view' | 'geometry'> {
-  const view = JSON.parse(session.view()) as Revision['view'];
+  const text = session.view();
+  const fresh = new Map<string, Geometry>();
+  // Most edits move nothing, and then there is nothing to be drawn again.
+  if (text === viewText) return { view: null, geometry: fresh };
+  viewText = text;
+  const view = JSON.parse(text) as DistributedView;
   const known = geometry;
   geometry = new Set(view.meshes.map((mesh) => mesh.geometry));
-  const fresh = new Map<string, Geometry>();
   view.meshes.forEach((mesh, index) => {
     if (!known.has(mesh.geometry) && !fresh.has(mesh.geometry)) fresh.set(mesh.geometry, session.view_mesh(index) as Geometry);
   });

@@ -5,6 +5,7 @@ import wasmUrl from '../../../target/studio/snell_wasm_bg.wasm?url';
 import type {
   Answers,
   Change,
+  CompleteRevision,
   Finding,
   FromDesk,
   FromRenderer,
@@ -67,6 +68,7 @@ export class Engine {
   private begun = 0;
   private coarsest = 4;
   private geometry = new Map<string, Geometry>();
+  private view: ViewScene | null = null;
   private collecting: (() => void) | null = null;
   private started: Promise<void> | null = null;
 
@@ -113,7 +115,7 @@ export class Engine {
   }
 
   /** Changes the scene. Rejects with a `Refusal`, and then everything is as it was. */
-  async change(change: Change): Promise<Revision & { view: ViewScene }> {
+  async change(change: Change): Promise<CompleteRevision> {
     await this.start();
     // Renderers go on with the picture before if this is refused.
     const revision = this.ask({ ask: 'change', change });
@@ -121,8 +123,8 @@ export class Engine {
     return this.complete(await revision);
   }
 
-  /** Renders the scene. What was under way is dropped. */
-  render(options: PictureOptions = {}): void {
+  /** Renders the scene. What was under way is dropped. After the first pass it waits for `hold` milliseconds. */
+  render(options: PictureOptions = {}, hold = 0): void {
     if (this.renderers.length === 0) return;
     this.picture++;
     this.collecting?.();
@@ -130,7 +132,7 @@ export class Engine {
     this.tellDesk({ do: 'gather', picture: this.picture, options });
     for (const renderer of this.renderers) {
       Object.assign(renderer, { covered: false, finished: false, pixels: 0, rays: 0 });
-      const message: ToRenderer = { do: 'render', picture: this.picture, options, coarsest: this.coarsest };
+      const message: ToRenderer = { do: 'render', picture: this.picture, options, coarsest: this.coarsest, hold };
       renderer.worker.postMessage(message);
     }
   }
@@ -232,8 +234,8 @@ export class Engine {
     else waiting?.reject(new Refusal(message.findings));
   }
 
-  private complete(revision: Revision): Revision {
-    const { view, geometry } = revision;
+  private complete({ view, geometry, ...revision }: Revision): CompleteRevision {
+    if (view === null) return { ...revision, view: this.view! };
     const all = new Map<string, Geometry>();
     for (const mesh of view.meshes) {
       const parts = geometry.get(mesh.geometry) ?? this.geometry.get(mesh.geometry)!;
@@ -241,7 +243,8 @@ export class Engine {
       Object.assign(mesh, parts);
     }
     this.geometry = all;
-    return revision;
+    this.view = view;
+    return { ...revision, view };
   }
 
   private refuse(findings: Finding[]): void {

@@ -37,8 +37,8 @@ export type Change = { open: Given } | { revise: string } | { edit: Edit[] };
 export interface Revision {
   text: string;
   scene: SceneDocument;
-  /** Without corners and faces, which `geometry` has under the mesh's key, or had when they were new. */
-  view: DistributedView;
+  /** Without corners and faces, which `geometry` has under the mesh's key, or had when they were new; `null`: as it was. */
+  view: DistributedView | null;
   geometry: Map<string, Geometry>;
   /** What is odd about it. */
   warnings: Finding[];
@@ -50,6 +50,9 @@ export interface DistributedView extends ViewScene {
 }
 
 export type Geometry = Pick<ViewMesh, 'vertices' | 'faces'>;
+
+/** The same, with everything in its place. */
+export type CompleteRevision = Omit<Revision, 'view' | 'geometry'> & { view: ViewScene };
 
 /** What of a picture is not as the scene has it. */
 export interface PictureOptions {
@@ -90,7 +93,8 @@ export interface Part {
 export type ToRenderer =
   | { do: 'start'; module: WebAssembly.Module; share: [index: number, count: number] }
   | { do: 'change'; change: Change }
-  | { do: 'render'; picture: number; options: PictureOptions; coarsest: number }
+  /** `hold`: milliseconds to wait after the coarsest pass, as another picture may be asked for at once. */
+  | { do: 'render'; picture: number; options: PictureOptions; coarsest: number; hold: number }
   | { do: 'stop' }
   /** Hand over what is not finished, too. */
   | { do: 'collect'; picture: number };

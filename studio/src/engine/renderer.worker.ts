@@ -33,7 +33,7 @@ function hear(message: ToRenderer): void {
       change(message.change);
       break;
     case 'render':
-      render(message.picture, message.options, message.coarsest);
+      render(message.picture, message.options, message.coarsest, message.hold);
       break;
     case 'stop':
       work = null;
@@ -44,10 +44,10 @@ function hear(message: ToRenderer): void {
   }
 }
 
-function render(picture: number, options: PictureOptions, coarsest: number): void {
+function render(picture: number, options: PictureOptions, coarsest: number, hold: number): void {
   work = null;
   try {
-    work = new Work(picture, options, coarsest);
+    work = new Work(picture, options, coarsest, hold);
     work.goOn();
   } catch (error) {
     const findings = findingsOf(error);
@@ -74,6 +74,7 @@ class Work {
     readonly picture: number,
     options: PictureOptions,
     private readonly coarsest: number,
+    private hold: number,
   ) {
     session!.begin(JSON.stringify({ ...options, coarsest, share }));
   }
@@ -89,11 +90,14 @@ class Work {
     }
     for (const [key, rect] of touched) this.pieces.set(key, { rect, finished: false });
     // The coarsest pass is over all of the share before the next one begins.
-    this.covered ||= finer || this.coarsest === 1 || session!.is_finished;
+    const covered = (this.covered ||= finer || this.coarsest === 1 || session!.is_finished);
     this.show([...touched.values()]);
     if (session!.is_finished) {
       this.handOver();
       tell({ tell: 'finished', picture: this.picture, statistics: session!.statistics() });
+    } else if (covered && this.hold > 0) {
+      setTimeout(() => work === this && this.goOn(), this.hold);
+      this.hold = 0;
     } else {
       this.goOn();
     }

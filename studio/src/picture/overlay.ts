@@ -78,7 +78,7 @@ export class Overlay {
     const bottom = Math.min(rows, Math.ceil((height - y) / scale));
     if (right <= left || bottom <= top || this.store.outcome.value === null) return;
     const rect: [number, number, number, number] = [left, top, right - left, bottom - top];
-    const key = `${rect.join()} ${this.store.frame.value}`;
+    const key = `${rect.join()} ${this.store.outcome.value.sha256}`;
     if (this.values?.key !== key) {
       this.ask(key, rect, { scale, x, y });
       return;

@@ -1,7 +1,7 @@
 /** The picture: point at it to ask, click to pin, drag things, zoom to the pixels. */
 
 import { useEffect, useRef } from 'preact/hooks';
-import { useSignal, useSignalEffect } from '@preact/signals';
+import { untracked, useSignal, useSignalEffect } from '@preact/signals';
 import { placeOf, roundTo, type Vec3 } from '../scene/objects';
 import { editsFor } from '../scene/movement';
 import type { Pixel, Store } from '../store';
@@ -33,7 +33,12 @@ export function PictureView({ store }: { store: Store }) {
 
   const size = () => store.revision.value?.size ?? ([1, 1] as [number, number]);
   const room = (): [number, number] => [box.current!.clientWidth, box.current!.clientHeight];
-  const fitted = () => (zoom.value = fit(size(), room()));
+  const fitted = () => {
+    const to = fit(size(), room());
+    const { scale, x, y } = zoom.value;
+    // Each change is drawn, and of most edits there is none.
+    if (to.scale !== scale || to.x !== x || to.y !== y) zoom.value = to;
+  };
 
   useEffect(() => {
     const { canvas } = store.surface;
@@ -59,11 +64,11 @@ export function PictureView({ store }: { store: Store }) {
   }, []);
 
   useSignalEffect(() => {
-    if (store.revision.value && !free.current) fitted();
+    if (store.revision.value && !free.current) untracked(fitted);
   });
   useSignalEffect(() => {
     lay(store.surface.canvas, zoom.value);
-    void [store.frame.value, store.asked.value, store.pinned.value, store.sighting.value, store.branch.value];
+    void [store.hovered.value, store.pinned.value, store.tree.value, store.sighting.value, store.branch.value, store.outcome.value];
     overlay.current?.draw(zoom.value);
   });
 

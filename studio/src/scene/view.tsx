@@ -1,16 +1,20 @@
 /** The scene in 3D: turn it, look through the camera or from a light, move things, and see the rays of a pixel. */
 
 import { effect, untracked } from '@preact/signals';
-import { type Change, mount, type Movement, type ObjectRef, TreePanel, type Viewer } from 'snell-viewer';
+import { type Change, mount, type Movement, type ObjectRef, TreePanel, type Viewer, type ViewScene } from 'snell-viewer';
 import { useEffect, useRef, useState } from 'preact/hooks';
 import type { Store } from '../store';
 import { editsFor } from './movement';
 import { objectsOf, placeOf, roundTo, type SceneObject, type Vec3 } from './objects';
 
+/** Milliseconds until the drawing has the newest picture. */
+const PICTURE = 120;
+
 /** The drawing of the studio, which the panel beside it takes part in. */
 export class Space {
   readonly viewer: Viewer;
   private readonly ends: (() => void)[] = [];
+  private waiting: ReturnType<typeof setTimeout> | null = null;
   private drag: { object: SceneObject; center: Vec3; radius: number; group: string } | null = null;
 
   constructor(
@@ -28,16 +32,18 @@ export class Space {
       this.viewer.on('moved', () => this.moved()),
     );
     let base = untracked(() => store.base.value);
+    let drawn: ViewScene | null = null;
+    let live = '';
     this.ends.push(
       effect(() => {
         const { view, size } = store.revision.value!;
-        this.viewer.setScene(view, { reset: base !== store.base.value });
-        base = store.base.value;
-        this.viewer.setLivePicture(store.surface.canvas, size);
+        if (view !== drawn) this.viewer.setScene(view, { reset: base !== store.base.value });
+        if (view !== drawn || size.join() !== live) this.viewer.setLivePicture(store.surface.canvas, size);
+        [base, drawn, live] = [store.base.value, view, size.join()];
       }),
       effect(() => {
         void store.frame.value;
-        this.viewer.pictureChanged();
+        this.showPictureSoon();
       }),
       effect(() => this.viewer.setTree(store.tree.value, { panel: store.pinned.value !== null })),
       effect(() => {
@@ -56,6 +62,7 @@ export class Space {
 
   dispose(): void {
     for (const end of this.ends) end();
+    if (this.waiting !== null) clearTimeout(this.waiting);
     this.viewer.dispose();
   }
 
@@ -85,6 +92,14 @@ export class Space {
     }
     const { object, center, radius, group } = this.drag;
     store.edit(editsFor(object, rounded(movement, radius || Math.hypot(...center)), center), { label: `${movement.kind} ${object.name}`, group });
+  }
+
+  /** The picture is small in the drawing, which must not take the time of the picture itself. */
+  private showPictureSoon(): void {
+    this.waiting ??= setTimeout(() => {
+      this.waiting = null;
+      this.viewer.pictureChanged();
+    }, PICTURE);
   }
 
   private point(id: number | null): void {

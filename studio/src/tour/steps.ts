@@ -126,7 +126,7 @@ export const STEPS: TourStep[] = [
     title: 'What physics does otherwise',
     text: 'The lecture’s model gives each material fixed shares of mirror and glass. In nature the share depends on the angle: Fresnel’s equations say how much is mirrored, and all the rest goes through.',
     task: 'Change the model of light to “Whitted: real optics”, and watch the rim of the sphere.',
-    answer: 'Head-on, glass of index 2 mirrors 11 % of the light; at the rim nearly all of it. The lecture’s shares sum to more than there is, so its glass is brighter than any real one.',
+    answer: 'Head-on, glass of index 2 mirrors 11 % of the light; at the rim nearly all of it, so that a bright line appears there. In the lecture’s model the shares are fixed numbers, whatever the angle.',
     scene: 'lecture/default',
     found: (store) => render(store)?.integrator === 'whitted',
   },
