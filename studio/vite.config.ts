@@ -1,9 +1,24 @@
 import { fileURLToPath } from 'node:url';
+import type { Plugin } from 'vite';
 import { defineConfig } from 'vitest/config';
 
 const path = (relative: string) => fileURLToPath(new URL(relative, import.meta.url));
 
+/** The engine is the largest part of the page, and what is shown waits for it: it comes with the first requests. */
+const preloadEngine: Plugin = {
+  name: 'preload-engine',
+  transformIndexHtml: {
+    order: 'post',
+    handler(_, { bundle }) {
+      const module = Object.keys(bundle ?? {}).find((file) => file.endsWith('.wasm'));
+      const attrs = { rel: 'preload', as: 'fetch', type: 'application/wasm', crossorigin: '', href: `./${module}` };
+      return module === undefined ? [] : [{ tag: 'link', attrs, injectTo: 'head' }];
+    },
+  },
+};
+
 export default defineConfig({
+  plugins: [preloadEngine],
   // Relative: the folder may lie below any path of any host.
   base: './',
   publicDir: false,

@@ -92,18 +92,26 @@ export class Engine {
       this.module = null;
       throw error;
     });
-    const module = await this.module;
-    this.desk = new Worker(new URL('./desk.worker.ts', import.meta.url), { type: 'module', name: 'desk' });
-    this.desk.onmessage = ({ data }: MessageEvent<FromDesk>) => this.hearDesk(data);
-    this.desk.onerror = (event) => this.broken(event.message || 'a part of the page could not be loaded');
+    // Their scripts are loaded while the module is compiled.
+    const desk = new Worker(new URL('./desk.worker.ts', import.meta.url), { type: 'module', name: 'desk' });
+    const workers = Array.from(
+      { length: this.threads },
+      (_, index) => new Worker(new URL('./renderer.worker.ts', import.meta.url), { type: 'module', name: `renderer ${index + 1}` }),
+    );
+    for (const worker of [desk, ...workers]) {
+      worker.onerror = (event) => this.broken(event.message || 'a part of the page could not be loaded');
+    }
+    const module = await this.module.catch((error: unknown) => {
+      for (const worker of [desk, ...workers]) worker.terminate();
+      throw error;
+    });
+    this.desk = desk;
+    desk.onmessage = ({ data }: MessageEvent<FromDesk>) => this.hearDesk(data);
     this.tellDesk({ do: 'start', module });
-    this.renderers = Array.from({ length: this.threads }, (_, index) => {
-      const worker = new Worker(new URL('./renderer.worker.ts', import.meta.url), { type: 'module', name: `renderer ${index + 1}` });
+    this.renderers = workers.map((worker, index) => {
       const renderer: Renderer = { worker, covered: false, finished: false, collected: false, pixels: 0, rays: 0 };
       worker.onmessage = ({ data }: MessageEvent<FromRenderer>) => this.hear(renderer, data);
-      worker.onerror = (event) => this.broken(event.message || 'a part of the page could not be loaded');
-      const started: ToRenderer = { do: 'start', module, share: [index, this.threads] };
-      worker.postMessage(started);
+      worker.postMessage({ do: 'start', module, share: [index, this.threads] } satisfies ToRenderer);
       return renderer;
     });
   }
