@@ -132,7 +132,8 @@ async function begin(store: Store, storage: WorkStorage): Promise<boolean> {
     if (base !== opened.base) opened = { base, text: revision.text };
     // Once it is changed, the scene is not that of the address any more: a reload must not bring that one back.
     if (revision.text !== opened.text && location.hash !== '') plainAddress();
-    storage.save({ name: base.name, text: revision.text, files: 'files' in base.given ? base.given.files : [] });
+    const draft = store.draft.value;
+    storage.save({ name: base.name, text: revision.text, files: 'files' in base.given ? base.given.files : [], ...(draft !== null && { draft }) });
   });
   return isNew;
 }

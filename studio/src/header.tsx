@@ -1,6 +1,7 @@
 /** What is done with the scene as a whole. */
 
 import { useSignal } from '@preact/signals';
+import { explanationPage } from './files/explanation';
 import { copy, download } from './files/save';
 import { Menu } from './menu';
 import { asCommand, asPython, type Copied, stem } from './share/code';
@@ -106,6 +107,17 @@ export function Header({ store, storage, openGallery, openFiles, startTour, star
           { title: 'Save scene', hint: 'TOML', act: () => download(`${name()}.toml`, store.revision.value!.text, 'application/toml') },
           { title: 'Save picture', hint: 'PNG', act: () => attempt(async () => download(`${name()}.png`, await store.save('png'), 'image/png')) },
           { title: 'Save numbers', hint: 'EXR', act: () => attempt(async () => download(`${name()}.exr`, await store.save('exr'), 'image/x-exr')) },
+          {
+            title: 'Save explanation',
+            hint: 'HTML',
+            act: () =>
+              attempt(async () => {
+                const tree = store.pinned.value && store.tree.value;
+                if (!tree) throw new Error('Click a pixel first: the page explains that one.');
+                const page = await explanationPage(tree, store.revision.value!.view);
+                download(`${name()}-${tree.pixel.join('-')}.html`, page, 'text/html');
+              }),
+          },
           { title: 'Forget my work in this browser', act: () => attempt(async () => (await storage.clear(), say('Nothing is kept any more'))) },
         ]}
       />

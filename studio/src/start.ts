@@ -3,7 +3,7 @@
 import type { Finding, Given } from './engine/protocol';
 import { SCENES } from './scenes';
 import { decode } from './share/link';
-import type { WorkStorage } from './storage';
+import type { Work, WorkStorage } from './storage';
 import type { Base, Store } from './store';
 
 export const FIRST = 'lecture/default';
@@ -44,12 +44,17 @@ export async function openFirst(store: Store, storage: WorkStorage, fragment: st
 }
 
 /** A scene with its text: a built-in one stays one, so that its bits can be compared. */
-export function openWork(store: Store, { name, text, files }: { name: string; text: string; files: [string, Uint8Array][] }): Promise<void> {
-  if (files.length === 0 && SCENES.some((scene) => scene.name === name)) return store.open(builtin(name), { text });
+export async function openWork(store: Store, { name, text, files, draft }: Work): Promise<void> {
+  await store.open(...baseOf(name, text, files));
+  if (draft !== undefined) store.write(draft);
+}
+
+function baseOf(name: string, text: string, files: Work['files']): Parameters<Store['open']> {
+  if (files.length === 0 && SCENES.some((scene) => scene.name === name)) return [builtin(name), { text }];
   // Whatever it was made of: the text is TOML.
   const file = `${name.replace(/\.(toml|nff|json|txt)$/i, '')}.toml`;
   const given: Given = { name: file, text: new TextEncoder().encode(text), files };
-  return store.open({ name: file, given });
+  return [{ name: file, given }];
 }
 
 function nameIn(fragment: string): string {

@@ -91,6 +91,13 @@ test('work survives a reload, with its files', async () => {
   expect(notes).toEqual([]);
 });
 
+test('a text that makes no scene is kept beside the one that did', async () => {
+  const tab = new Tab();
+  tab.work.save({ name: 'a.toml', text: 'snell = 1', files: [], draft: 'snell =' });
+  await tab.work.flush();
+  expect(await tab.reload()).toEqual({ name: 'a.toml', text: 'snell = 1', files: [], draft: 'snell =' });
+});
+
 test('a new text is kept before flush returns, since the tab may be closing', async () => {
   const tab = new Tab();
   await tab.work.load();

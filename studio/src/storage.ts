@@ -7,6 +7,8 @@ export interface Work {
   name: string;
   text: string;
   files: [string, Uint8Array][];
+  /** What was written last, if it makes no scene. */
+  draft?: string;
 }
 
 /** What a browser provides, as far as it does. */
@@ -23,6 +25,7 @@ interface Kept {
   version: 1;
   name: string;
   text: string;
+  draft?: string;
   /** Where the files are in the database, if there are any. */
   files: string | null;
   /** When, in milliseconds. */
@@ -70,10 +73,10 @@ export class WorkStorage {
     const files = kept.files === null ? [] : await this.transact('readonly', (store) => store.get(kept.files!)).catch(() => null);
     if (!areFiles(files)) {
       this.note(NO_FILES);
-      return { name: kept.name, text: kept.text, files: [] };
+      return { ...workOf(kept), files: [] };
     }
     this.stored = { files, key: kept.files };
-    return { name: kept.name, text: kept.text, files };
+    return { ...workOf(kept), files };
   }
 
   /** Keeps the work a moment later, if nothing newer comes; new files at once, since they come seldom and take their time. */
@@ -141,8 +144,8 @@ export class WorkStorage {
     await this.removeUnused();
   }
 
-  private write(id: string, { name, text }: Work, files: string | null): void {
-    const kept: Kept = { version: 1, name, text, files, time: Date.now() };
+  private write(id: string, work: Work, files: string | null): void {
+    const kept: Kept = { version: 1, ...workOf(work), files, time: Date.now() };
     const { local } = this.browser;
     try {
       if (local === undefined) throw new Error('there is no storage');
@@ -240,6 +243,10 @@ function answered<T>(request: IDBOpenDBRequest & IDBRequest<T>): Promise<T> {
     request.onerror = () => reject(request.error);
     request.onblocked = () => reject(new Error('another tab blocks the database'));
   });
+}
+
+function workOf({ name, text, draft }: Omit<Work, 'files'>): Omit<Work, 'files'> {
+  return { name, text, ...(typeof draft === 'string' && { draft }) };
 }
 
 function keptIn(text: string): Kept | null {

@@ -97,9 +97,9 @@ export class Store {
   /** Where the ray of the tree ends that is pointed at, if it meets something. */
   readonly branch = signal<[number, number, number] | null>(null);
   readonly selectedName = signal<string | null>(null);
-  /** What the handles of the selected object do, and the step that they snap to. */
+  /** What the handles of the selected object do, and whether they snap to round steps. */
   readonly handles = signal<'move' | 'turn' | 'scale'>('move');
-  readonly snap = signal<number | null>(null);
+  readonly snaps = signal(false);
   readonly sighting = signal<ShownSighting | null>(null);
   readonly comparison = signal<Comparison | null>(null);
   readonly undoLabel = signal<string | null>(null);
@@ -487,7 +487,7 @@ export class Store {
 
   private tell(error: unknown): void {
     if (error instanceof Refusal) this.refused.value = error.findings;
-    else if (!(error instanceof Cancelled)) throw error;
+    else if (!(error instanceof Cancelled)) this.refused.value = [{ message: error instanceof Error ? error.message : String(error) }];
   }
 
   /** Starts the engine anew, with the last scene that worked. One that fails twice stays closed until it is changed. */

@@ -93,6 +93,13 @@ test('a text that is broken says where, keeps the picture, and is taken back by 
     await page.keyboard.press('Control+Home');
     await page.keyboard.type('nonsense = 5\n');
     await page.getByRole('alert').getByText('nonsense').waitFor();
+    await page.waitForTimeout(700);
+    await page.goto(url);
+    await page.reload();
+    await page.getByRole('alert').getByText('nonsense').waitFor();
+    expect(await finished(page)).toBe(before);
+    await page.getByRole('tab', { name: 'Source' }).click();
+    await page.locator('.cm-content').getByText('nonsense').waitFor();
     expect(await page.evaluate(() => window.snell.outcome.value!.sha256)).toBe(before);
     await page.keyboard.press('Control+z');
     await page.waitForFunction(() => window.snell.draft.value === null);
@@ -134,6 +141,24 @@ test('what is saved is what the command line writes', () =>
     const saved = readFileSync(await download.path());
     execFileSync(snell, ['render', 'lecture/default', '-o', `${OUT}native.png`]);
     expect(saved.equals(readFileSync(`${OUT}native.png`))).toBe(true);
+  }));
+
+test('the explanation of a pixel is a page that needs nothing else', () =>
+  on('#gallery/bubbles', async (page) => {
+    await finished(page);
+    const at = await placeOf(page, [200, 200]);
+    await page.mouse.click(at.x, at.y);
+    await page.waitForFunction(() => window.snell.pinned.value && window.snell.tree.value?.pixel[0] === window.snell.pinned.value[0]);
+    await page.getByRole('button', { name: 'File' }).click();
+    const [download] = await Promise.all([page.waitForEvent('download'), page.getByRole('menuitem', { name: 'Save explanation' }).click()]);
+    const html = readFileSync(await download.path(), 'utf8');
+    const other = await browser.newPage();
+    const errors: string[] = [];
+    other.on('pageerror', (error) => errors.push(error.message));
+    await other.setContent(html);
+    await other.getByRole('treeitem').first().waitFor();
+    expect(errors).toEqual([]);
+    await other.close();
   }));
 
 test('with one worker and with three the film is the same', async () => {

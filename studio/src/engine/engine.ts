@@ -42,6 +42,7 @@ export class Cancelled extends Error {}
 interface Renderer {
   worker: Worker;
   covered: boolean;
+  coveredIn: number;
   finished: boolean;
   collected: boolean;
   pixels: number;
@@ -54,8 +55,8 @@ type Waiting = { resolve(answer: Answers[Question['ask']]): void; reject(reason:
 const MOST_RENDERERS = 16;
 /** The coarsest pass of a preview, by how many pixels it leaves out in a row. */
 const COARSEST = 16;
-/** Milliseconds in which the first pass of a preview should be there, and below which it may be finer. */
-const [SLOW, FAST] = [30, 9];
+/** Milliseconds in which the first pass of a preview should be there, and below which it may be finer: twice as fine takes four times as long. */
+const [SLOW, FAST] = [30, 7];
 
 export class Engine {
   private module: Promise<WebAssembly.Module> | null = null;
@@ -65,7 +66,6 @@ export class Engine {
   private questions = 0;
   /** The picture that is under way; messages about others are late. */
   private picture = 0;
-  private begun = 0;
   private coarsest = 4;
   private geometry = new Map<string, Geometry>();
   private view: ViewScene | null = null;
@@ -109,7 +109,7 @@ export class Engine {
     desk.onmessage = ({ data }: MessageEvent<FromDesk>) => this.hearDesk(data);
     this.tellDesk({ do: 'start', module });
     this.renderers = workers.map((worker, index) => {
-      const renderer: Renderer = { worker, covered: false, finished: false, collected: false, pixels: 0, rays: 0 };
+      const renderer: Renderer = { worker, covered: false, coveredIn: 0, finished: false, collected: false, pixels: 0, rays: 0 };
       worker.onmessage = ({ data }: MessageEvent<FromRenderer>) => this.hear(renderer, data);
       worker.postMessage({ do: 'start', module, share: [index, this.threads] } satisfies ToRenderer);
       return renderer;
@@ -136,7 +136,6 @@ export class Engine {
     if (this.renderers.length === 0) return;
     this.picture++;
     this.collecting?.();
-    this.begun = performance.now();
     this.tellDesk({ do: 'gather', picture: this.picture, options });
     for (const renderer of this.renderers) {
       Object.assign(renderer, { covered: false, finished: false, pixels: 0, rays: 0 });
@@ -189,7 +188,7 @@ export class Engine {
     switch (message.tell) {
       case 'patches': {
         const covered = this.covered;
-        Object.assign(renderer, { covered: message.covered, pixels: message.pixels, rays: message.rays });
+        Object.assign(renderer, { covered: message.covered, coveredIn: message.coveredIn, pixels: message.pixels, rays: message.rays });
         if (this.covered && !covered) this.adapt();
         this.events.patches(message.patches, this.covered);
         this.events.progress(this.sum('pixels'), this.sum('rays'));
@@ -217,9 +216,9 @@ export class Engine {
     return this.renderers.reduce((sum, renderer) => sum + renderer[what], 0);
   }
 
-  /** The next preview is finer if this one was there at once, and coarser if one had to wait for it. */
+  /** The next preview is finer if this one took no time, and coarser if one had to wait for it. Time that others took does not count. */
   private adapt(): void {
-    const took = performance.now() - this.begun;
+    const took = Math.max(...this.renderers.map(({ coveredIn }) => coveredIn));
     if (took > SLOW) this.coarsest = Math.min(COARSEST, 2 * this.coarsest);
     else if (took < FAST) this.coarsest = Math.max(1, this.coarsest / 2);
   }

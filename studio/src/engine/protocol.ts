@@ -100,8 +100,8 @@ export type ToRenderer =
   | { do: 'collect'; picture: number };
 
 export type FromRenderer =
-  /** What was rendered lately; `covered` once each pixel has been, or one near it. */
-  | { tell: 'patches'; picture: number; patches: Patch[]; covered: boolean; pixels: number; rays: number }
+  /** What was rendered lately; `covered` once each pixel has been, or one near it, and how many milliseconds that took. */
+  | { tell: 'patches'; picture: number; patches: Patch[]; covered: boolean; coveredIn: number; pixels: number; rays: number }
   | { tell: 'part'; picture: number; part: Part }
   /** With what was traced, for the desk alone. */
   | { tell: 'finished'; picture: number; statistics: string }

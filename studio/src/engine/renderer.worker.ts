@@ -68,6 +68,8 @@ function change(change: Parameters<typeof changed>[1]): void {
 
 class Work {
   private covered = false;
+  private isCoverTold = false;
+  private coveredIn = 0;
   private readonly pieces = new Map<string, { rect: Rect; finished: boolean }>();
 
   constructor(
@@ -80,6 +82,7 @@ class Work {
   }
 
   slice(): void {
+    const start = performance.now();
     const steps = session!.step(SLICE);
     const touched = new Map<string, Rect>();
     let finer = false;
@@ -91,7 +94,7 @@ class Work {
     for (const [key, rect] of touched) this.pieces.set(key, { rect, finished: false });
     // The coarsest pass is over all of the share before the next one begins.
     const covered = (this.covered ||= finer || this.coarsest === 1 || session!.is_finished);
-    this.show([...touched.values()]);
+    this.show([...touched.values()], start);
     if (session!.is_finished) {
       this.handOver();
       tell({ tell: 'finished', picture: this.picture, statistics: session!.statistics() });
@@ -118,13 +121,16 @@ class Work {
     }
   }
 
-  private show(rects: Rect[]): void {
+  private show(rects: Rect[], start: number): void {
     const patches = rects.map((rect): Patch => {
       const bytes = session!.rgba(rect.x, rect.y, rect.width, rect.height) as Uint8ClampedArray<ArrayBuffer>;
       return { ...rect, rgba: bytes };
     });
     const { pixels, rays } = JSON.parse(session!.progress()) as { pixels: number; rays: number };
-    const told: FromRenderer = { tell: 'patches', picture: this.picture, patches, covered: this.covered, pixels, rays };
+    if (!this.isCoverTold) this.coveredIn += performance.now() - start;
+    this.isCoverTold = this.covered;
+    const { picture, covered, coveredIn } = this;
+    const told: FromRenderer = { tell: 'patches', picture, patches, covered, coveredIn, pixels, rays };
     tell(told, patches.map(({ rgba }) => rgba.buffer));
   }
 

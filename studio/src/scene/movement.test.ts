@@ -1,7 +1,7 @@
 import { expect, test } from 'vitest';
 import type { SceneDocument } from '../generated/scene';
 import { editsFor } from './movement';
-import { numberText, objectsOf, quoted, roundTo } from './objects';
+import { numberText, objectsOf, quoted, roundTo, snapOf } from './objects';
 
 const scene = {
   snell: 1,
@@ -68,6 +68,13 @@ test('a light at infinity and the camera cannot be scaled, and the light cannot 
 test('numbers are those of the scene, in any unit', () => {
   expect([numberText(0.1 + 0.2), numberText(1e8 + 0.5), numberText(-3e-9), numberText(1e21)]).toEqual(['0.3', '100000000.5', '-3e-9', '1e+21']);
   expect([roundTo(1.23456789, 9), roundTo(1.23456789e-9, 9e-9), roundTo(5, 0)]).toEqual([1.235, 1.235e-9, 5]);
+});
+
+test('the step that things snap to is as large as the scene asks for', () => {
+  const of = (unit: number) => snapOf({ ...scene, camera: { ...scene.camera, eye: [0, 0, 90 * unit] } });
+  expect([of(1), of(1e9)]).toEqual([1, 1e9]);
+  // A power of ten below one has no exact form.
+  expect(of(1e-9)).toBeCloseTo(1e-9, 20);
 });
 
 test('names are quoted where TOML wants it', () => {

@@ -53,6 +53,12 @@ export function vectorText(values: readonly number[]): string {
   return `[${values.map(numberText).join(', ')}]`;
 }
 
+/** A round length that is small beside what the camera sees, whatever the unit: what things snap to. */
+export function snapOf({ camera }: SceneDocument): number {
+  const away = Math.hypot(...camera.look_at.map((value, axis) => value - camera.eye[axis]!));
+  return 10 ** Math.floor(Math.log10(away / 20));
+}
+
 /** The middle of an object as it is seen, and how far it reaches; nothing for what has no place. */
 export function placeOf(object: SceneObject, view: ViewScene): { center: Vec3; radius: number } | null {
   if (object.kind === 'camera') return { center: object.data.eye as Vec3, radius: 0 };

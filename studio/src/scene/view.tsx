@@ -1,11 +1,11 @@
 /** The scene in 3D: turn it, look through the camera or from a light, move things, and see the rays of a pixel. */
 
-import { effect, untracked } from '@preact/signals';
+import { effect, untracked, useComputed } from '@preact/signals';
 import { type Change, mount, type Movement, type ObjectRef, TreePanel, type Viewer, type ViewScene } from 'snell-viewer';
 import { useEffect, useRef, useState } from 'preact/hooks';
 import type { Store } from '../store';
 import { editsFor } from './movement';
-import { objectsOf, placeOf, roundTo, type SceneObject, type Vec3 } from './objects';
+import { objectsOf, placeOf, roundTo, type SceneObject, snapOf, type Vec3 } from './objects';
 
 /** Milliseconds until the drawing has the newest picture. */
 const PICTURE = 120;
@@ -48,8 +48,9 @@ export class Space {
       effect(() => this.viewer.setTree(store.tree.value, { panel: store.pinned.value !== null })),
       effect(() => {
         const selected = this.refOf(store.selected.value);
-        const target = store.revision.value!.scene.camera.look_at as Vec3;
-        this.viewer.setObjects({ selected, handles: selected && store.handles.value, snap: store.snap.value, target });
+        const { scene } = store.revision.value!;
+        const [handles, snap] = [selected && store.handles.value, store.snaps.value ? snapOf(scene) : null];
+        this.viewer.setObjects({ selected, handles, snap, target: scene.camera.look_at as Vec3 });
       }),
     );
   }
@@ -130,16 +131,22 @@ function rounded(change: Change, extent: number): Change {
 export function SpaceView({ store, onSpace }: { store: Store; onSpace(space: Space | null): void }) {
   const place = useRef<HTMLDivElement>(null);
   const [shown, show] = useState<Space | null>(null);
-  const ready = store.revision.value !== null;
+  // The picture first: to set up a drawing in 3D takes a browser longer than the engine takes for all of it.
+  const ready = useComputed(() => store.revision.value !== null && store.frame.value > 0).value;
   useEffect(() => {
     if (!ready) return;
-    const space = new Space(place.current!, store);
-    onSpace(space);
-    show(space);
+    let space: Space | null = null;
+    // After the frame in which the picture is shown.
+    const soon = setTimeout(() => {
+      space = new Space(place.current!, store);
+      onSpace(space);
+      show(space);
+    }, 30);
     return () => {
+      clearTimeout(soon);
       onSpace(null);
       show(null);
-      space.dispose();
+      space?.dispose();
     };
   }, [ready]);
   return (
@@ -193,7 +200,7 @@ function SpaceTools({ store, space }: { store: Store; space: Space | null }) {
           </button>
         ))}
         <label class="button">
-          <input type="checkbox" checked={store.snap.value !== null} onChange={(event) => (store.snap.value = event.currentTarget.checked ? 1 : null)} /> Snap
+          <input type="checkbox" checked={store.snaps.value} onChange={(event) => (store.snaps.value = event.currentTarget.checked)} /> Snap
         </label>
       </div>
     </div>
