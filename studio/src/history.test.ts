@@ -20,8 +20,7 @@ test('a drag is one step, and so is the next one', () => {
   const history = new History<number>();
   history.record(version('start'));
   for (const text of ['1', '2', '3']) history.record(version(text), 'drag');
-  history.endGroup();
-  for (const text of ['4', '5'] as const) history.record(version(text), 'drag');
+  for (const text of ['4', '5'] as const) history.record(version(text), 'another drag');
   expect(history.peek(-1)!.text).toBe('3');
   history.move(-1);
   expect(history.peek(-1)!.text).toBe('start');

@@ -47,11 +47,6 @@ export class History<Base> {
     this.at = this.versions.length - 1;
   }
 
-  /** The next version gets a place of its own. */
-  endGroup(): void {
-    this.group = null;
-  }
-
   move(steps: -1 | 1): void {
     if (this.peek(steps) === undefined) return;
     this.at += steps;

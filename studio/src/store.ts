@@ -42,12 +42,14 @@ export interface ShownSighting extends Sighting {
 /** How an edit stands in the history. */
 export interface EditOptions {
   label: string;
-  /** Edits of one group are one step: a drag, a slider. */
+  /** Edits of one group are one step: of this drag, of this pull at a slider. No other has its name. */
   group?: string;
 }
 
 /** Milliseconds between the first pass of a picture and the next, while something is dragged. */
 const HOLD = 40;
+/** Milliseconds without a key that begin another step to undo. */
+const PAUSE = 2000;
 /** Milliseconds without a key before what was written is read. */
 const CALM = 250;
 
@@ -123,6 +125,8 @@ export class Store {
   /** Does it have a scene? */
   private isOpen = false;
   private running = false;
+  /** When a key was pressed last in the text, and which step that belongs to. */
+  private readonly written = { at: -Infinity, step: 0 };
   private calm: ReturnType<typeof setTimeout> | undefined;
   private covered: (() => void) | null = null;
   private begun = 0;
@@ -183,15 +187,14 @@ export class Store {
     if (edits.length > 0) this.enqueue({ change: { edit: edits }, label, group: group ?? null, base: null }).catch(() => {});
   }
 
-  /** The next edit is a step of its own, even if it is of the same group. */
-  endGroup(): void {
-    this.history.endGroup();
-  }
-
   /** Takes the text that a person is writing, and reads it when there is a pause. */
   write(text: string): void {
     // At once: an earlier text that is read meanwhile must not take the place of this one.
     this.draft.value = text;
+    const now = performance.now();
+    // After a pause it is another step to undo.
+    if (now - this.written.at > PAUSE) this.written.step++;
+    this.written.at = now;
     clearTimeout(this.calm);
     this.calm = setTimeout(() => this.readDraft(), CALM);
   }
@@ -205,7 +208,7 @@ export class Store {
     if (text === null) return;
     const step = this.steps.at(-1);
     if (step && typeof step.change === 'object' && 'revise' in step.change) step.change = { revise: text };
-    else this.enqueue({ change: { revise: text }, label: 'edit the text', group: 'text', base: null }).catch(() => {});
+    else this.enqueue({ change: { revise: text }, label: 'edit the text', group: `text ${this.written.step}`, base: null }).catch(() => {});
   }
 
   undo(): void {

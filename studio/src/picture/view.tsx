@@ -145,7 +145,6 @@ export function PictureView({ store }: { store: Store }) {
     pointers.current.delete(event.pointerId);
     const state = gesture.current;
     gesture.current = null;
-    if (state?.kind === 'drag') store.endGroup();
     if (state?.kind !== 'press' || event.type === 'pointercancel') return;
     box.current!.focus();
     store.pin(state.pixel);

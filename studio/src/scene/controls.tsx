@@ -23,7 +23,6 @@ export function useEdit({ store, of, label }: Of): { set(text: string | null, ..
     },
     done() {
       group.current = '';
-      store.endGroup();
     },
   };
 }

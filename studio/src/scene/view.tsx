@@ -112,7 +112,6 @@ export class Space {
 
   private moved(): void {
     this.drag = null;
-    this.store.endGroup();
   }
 }
 
