@@ -6,6 +6,8 @@ import { brokenBy, changed, findingsOf, start } from './session';
 
 /** Milliseconds that a slice takes. */
 const SLICE = 12;
+/** Milliseconds between two looks at whether the first pass is complete. */
+const GLIMPSE = 1;
 /** Side of the pieces in which shares are dealt out, in pixels: that of the engine. */
 const PIECE = 64;
 
@@ -68,6 +70,9 @@ function change(change: Parameters<typeof changed>[1]): void {
 
 class Work {
   private covered = false;
+  /** Pixels of the share, and those of them that the first pass has been over. */
+  private readonly total: number;
+  private seen = 0;
   private isCoverTold = false;
   private coveredIn = 0;
   private readonly pieces = new Map<string, { rect: Rect; finished: boolean }>();
@@ -79,26 +84,30 @@ class Work {
     private hold: number,
   ) {
     session!.begin(JSON.stringify({ ...options, coarsest, share }));
+    this.total = (JSON.parse(session!.progress()) as { total_pixels: number }).total_pixels;
   }
 
   slice(): void {
     const start = performance.now();
-    const steps = session!.step(SLICE);
     const touched = new Map<string, Rect>();
-    let finer = false;
-    for (let at = 0; at < steps.length; at += 5) {
-      const piece = this.pieceAt(steps[at]!, steps[at + 1]!);
-      touched.set(`${piece.x},${piece.y}`, piece);
-      finer ||= steps[at + 4]! < this.coarsest;
-    }
+    // The first pass is shown as soon as it is there, and alone: how long it took says how fine the next one may be.
+    const budget = this.covered ? SLICE : GLIMPSE;
+    do {
+      const steps = session!.step(budget);
+      for (let at = 0; at < steps.length; at += 5) {
+        const [x, y, width, height, step] = steps.subarray(at, at + 5) as unknown as [number, number, number, number, number];
+        const piece = this.pieceAt(x, y);
+        touched.set(`${piece.x},${piece.y}`, piece);
+        if (step === this.coarsest) this.seen += width * height;
+      }
+      this.covered ||= this.seen >= this.total || session!.is_finished;
+    } while (!this.covered && performance.now() - start < SLICE);
     for (const [key, rect] of touched) this.pieces.set(key, { rect, finished: false });
-    // The coarsest pass is over all of the share before the next one begins.
-    const covered = (this.covered ||= finer || this.coarsest === 1 || session!.is_finished);
     this.show([...touched.values()], start);
     if (session!.is_finished) {
       this.handOver();
       tell({ tell: 'finished', picture: this.picture, statistics: session!.statistics() });
-    } else if (covered && this.hold > 0) {
+    } else if (this.covered && this.hold > 0) {
       setTimeout(() => work === this && this.goOn(), this.hold);
       this.hold = 0;
     } else {
