@@ -22,6 +22,8 @@ export async function openFirst(store: Store, storage: WorkStorage, fragment: st
       return { isNew: false };
     }
     if (name !== '') store.notes.value = [{ message: `There is no built-in scene called “${name}”, as the address has it.` }];
+    // An address that is typed later, and means nothing, changes nothing.
+    if (store.revision.value !== null) return { isNew: false };
   } catch (error) {
     const finding: Finding = { message: error instanceof Error ? error.message : String(error) };
     store.notes.value = [finding];

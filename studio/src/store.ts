@@ -502,11 +502,17 @@ export class Store {
   private async startAgain(message: string | null): Promise<void> {
     this.busy.value = 'Starting the engine again …';
     const version = this.history.current;
+    if (message !== null && version === undefined) {
+      // Not even the first scene could be opened: what is missing is a part of the page.
+      this.broken.value = message;
+      this.busy.value = null;
+      return;
+    }
     const again = message !== null && version === this.failed;
     this.failed = message === null ? undefined : version;
     try {
       this.isOpen = false;
-      await this.engine.restart();
+      if (!again) await this.engine.restart();
       if (version !== undefined && !again) {
         const revision = await this.read({ change: { open: version.base.given }, text: version.text });
         this.show(revision, { base: version.base, label: version.label, group: null });

@@ -6,6 +6,7 @@ import type { Server } from 'node:http';
 import { tmpdir } from 'node:os';
 import { basename, join } from 'node:path';
 import type { Browser, Page } from 'playwright-core';
+import { PNG } from 'pngjs';
 import { afterAll, beforeAll, expect, test } from 'vitest';
 import { DIST, finished, launch, open, OUT, placeOf, serve } from './page';
 
@@ -141,6 +142,24 @@ test('what is saved is what the command line writes', () =>
     const saved = readFileSync(await download.path());
     execFileSync(snell, ['render', 'lecture/default', '-o', `${OUT}native.png`]);
     expect(saved.equals(readFileSync(`${OUT}native.png`))).toBe(true);
+  }));
+
+test('a picture that was stopped is saved as far as it had come', () =>
+  on('#gallery/ice', async (page) => {
+    await page.waitForFunction(() => window.snell?.frame.value > 2 && window.snell.progress.value.pixels > 0);
+    await page.getByRole('button', { name: 'Stop' }).click();
+    await page.waitForTimeout(500);
+    const shown = await page.evaluate(() => {
+      const { canvas } = window.snell.surface;
+      return [...canvas.getContext('2d')!.getImageData(0, 0, canvas.width, canvas.height).data];
+    });
+    expect(await page.evaluate(() => window.snell.outcome.value)).toBe(null);
+    await page.getByRole('button', { name: 'File' }).click();
+    const [download] = await Promise.all([page.waitForEvent('download'), page.getByRole('menuitem', { name: 'Save picture' }).click()]);
+    const { data, width, height } = PNG.sync.read(readFileSync(await download.path()));
+    expect(shown.length).toBe(4 * width * height);
+    expect(shown.filter((value, at) => value !== data[at]).length).toBe(0);
+    expect(shown.filter((value, at) => at % 4 !== 3 && value > 0).length).toBeGreaterThan(width * height);
   }));
 
 test('the explanation of a pixel is a page that needs nothing else', () =>
@@ -290,7 +309,7 @@ test('a file that is no scene says so, and the scene before stays', () =>
     expect(await page.evaluate(() => [window.snell.base.value!.name, window.snell.outcome.value!.sha256])).toEqual(['lecture/default', before]);
   }));
 
-test('a hundred thousand spheres, an empty scene and a huge picture do not freeze the page', () =>
+test('an empty scene and a huge picture leave a page that goes on', () =>
   on('#lecture/default', async (page) => {
     await finished(page);
     const opened = async (body: string) =>

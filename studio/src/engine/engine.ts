@@ -225,7 +225,7 @@ export class Engine {
 
   private async finish(picture: number): Promise<void> {
     try {
-      const outcome = await this.ask({ ask: 'outcome', picture });
+      const outcome = await this.ask({ ask: 'outcome' });
       if (picture === this.picture) this.events.finished(outcome);
     } catch (error) {
       if (!(error instanceof Cancelled)) throw error;

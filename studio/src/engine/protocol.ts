@@ -125,7 +125,7 @@ export type Question =
   | { ask: 'find'; object: string }
   | { ask: 'path'; path: string }
   | { ask: 'values'; x: number; y: number; width: number; height: number }
-  | { ask: 'outcome'; picture: number }
+  | { ask: 'outcome' }
   | { ask: 'glasses' }
   | { ask: 'png' | 'exr' };
 

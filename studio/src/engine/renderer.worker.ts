@@ -38,7 +38,7 @@ function hear(message: ToRenderer): void {
       render(message.picture, message.options, message.coarsest, message.hold);
       break;
     case 'stop':
-      work = null;
+      work?.stop();
       break;
     case 'collect':
       if (work?.picture === message.picture) work.handOver();
@@ -69,6 +69,7 @@ function change(change: Parameters<typeof changed>[1]): void {
 }
 
 class Work {
+  private stopped = false;
   private covered = false;
   /** Pixels of the share, and those of them that the first pass has been over. */
   private readonly total: number;
@@ -88,6 +89,7 @@ class Work {
   }
 
   slice(): void {
+    if (this.stopped) return;
     const start = performance.now();
     const touched = new Map<string, Rect>();
     // The first pass is shown as soon as it is there, and alone: how long it took says how fine the next one may be.
@@ -113,6 +115,11 @@ class Work {
     } else {
       this.goOn();
     }
+  }
+
+  /** What has been rendered can still be handed over. */
+  stop(): void {
+    this.stopped = true;
   }
 
   goOn(): void {

@@ -2,6 +2,7 @@
 
 import type { ComponentChildren } from 'preact';
 import { useId, useRef } from 'preact/hooks';
+import { displayed } from '../../../viewer/src/color';
 import type { Edit } from '../engine/protocol';
 import type { Store } from '../store';
 import { numberText, type Vec3, vectorText } from './objects';
@@ -179,16 +180,13 @@ export function Choice(of: Of & { value: string; options: readonly (readonly [va
   );
 }
 
-/** IEC 61966-2-1, to eight bits: what a colour field can show. */
+/** To eight bits: what a colour field can show. */
 export function toHex(color: readonly number[], transfer: 'linear' | 'srgb'): string {
-  const bytes = color.map((value) => {
-    const light = Math.min(1, Math.max(0, value));
-    const shown = transfer === 'linear' ? light : light <= 0.0031308 ? 12.92 * light : 1.055 * light ** (1 / 2.4) - 0.055;
-    return Math.round(255 * shown).toString(16).padStart(2, '0');
-  });
+  const bytes = displayed([...color] as Vec3, transfer).map((value) => Math.round(255 * value).toString(16).padStart(2, '0'));
   return `#${bytes.join('')}`;
 }
 
+/** The other way: the curve of IEC 61966-2-1 backwards. */
 export function fromHex(hex: string, transfer: 'linear' | 'srgb'): Vec3 {
   const bytes = [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16) / 255);
   return bytes.map((shown) => {
