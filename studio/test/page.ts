@@ -25,8 +25,8 @@ export function launch(): Promise<Browser> {
   if (!existsSync(CHROMIUM)) throw new Error('Chromium is missing: apt-get install chromium');
   if (!existsSync(`${DIST}index.html`)) throw new Error('The studio has not been built: make studio');
   mkdirSync(OUT, { recursive: true });
-  const args = ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'];
-  return chromium.launch({ executablePath: CHROMIUM, args });
+  // As on a computer without a graphics card: the page is put together in software, and only what is in 3D is drawn by SwiftShader.
+  return chromium.launch({ executablePath: CHROMIUM, args: ['--no-sandbox', '--enable-unsafe-swiftshader'] });
 }
 
 /** As plain as `python -m http.server`: no headers but the type. */

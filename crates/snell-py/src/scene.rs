@@ -4,12 +4,17 @@ use crate::errors::{self, Finding, raise};
 use crate::world::{NativeWorld, read_files, reads_the_same};
 use numpy::{PyArray2, PyReadonlyArray2};
 use pyo3::prelude::*;
+use pyo3::types::PyBytes;
 use snell::geometry::Vec3;
 use snell::scene::{Mesh, Scene};
-use snell_formats::load::load;
+use snell_formats::files::Recorder;
+use snell_formats::load::{Kind, load, load_with};
+use snell_formats::model::parse_ply;
 use snell_formats::scene_file::{self, Syntax};
 use snell_formats::{LoadOptions, Report, Source, builtin};
-use std::path::PathBuf;
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<NativeScene>()?;
@@ -18,6 +23,7 @@ pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(read, module)?)?;
     module.add_function(wrap_pyfunction!(parsed, module)?)?;
     module.add_function(wrap_pyfunction!(changed, module)?)?;
+    module.add_function(wrap_pyfunction!(unpacked, module)?)?;
     module.add_function(wrap_pyfunction!(write, module)?)
 }
 
@@ -116,6 +122,23 @@ fn parsed(py: Python<'_>, text: String) -> PyResult<(String, Arrays<'_>)> {
     hand_over(py, scene)
 }
 
+/// A scene in TOML, some of whose models are the meshes that [`NativeScene::packed`] made files of: those become arrays again.
+#[pyfunction]
+fn unpacked(py: Python<'_>, text: String, packed: Vec<(String, Vec<u8>)>) -> PyResult<(String, Arrays<'_>)> {
+    let source = Source::new(OURS, text);
+    let scene = py.detach(|| {
+        let mut scene = scene_file::parse(&source, Syntax::Toml)?;
+        for mesh in &mut scene.meshes {
+            if let Some((name, bytes)) = packed.iter().find(|(name, _)| mesh.file.as_ref() == Some(name)) {
+                mesh.geometry = Some(Arc::new(parse_ply(name, bytes)?.mesh));
+                mesh.file = None;
+            }
+        }
+        Ok(scene)
+    });
+    hand_over(py, scene.map_err(|report: Report| failed(py, &[report], Some(&source)))?)
+}
+
 /// A scene with one value changed.
 #[pyfunction]
 fn changed(py: Python<'_>, text: String, key: String, value: String) -> PyResult<String> {
@@ -193,7 +216,31 @@ impl NativeScene {
         });
         made.map_err(|findings: Vec<Finding>| raise(py, "SceneError", findings))
     }
+
+    /// What a page in a browser needs to load it: what it is called there, its text in TOML, the files that it reads, and the meshes
+    /// that are too large for a text, as files.
+    fn packed<'py>(&self, py: Python<'py>, stem: &str) -> PyResult<(String, String, Files<'py>, Files<'py>)> {
+        let packed = py.detach(|| {
+            let mut scene = self.scene.clone();
+            self.inline.fill(&mut scene);
+            let (text, meshes) = scene_file::pack(scene, stem, Syntax::Toml).map_err(|report| vec![report])?;
+            let recorder = Arc::new(Recorder::new(&self.folder));
+            let options = LoadOptions { files: Arc::clone(&recorder) as _, ..LoadOptions::default() };
+            load_with(self.source.clone(), Kind::Json, Path::new(""), &options, |scene| self.inline.fill(scene))?;
+            let (name, files) = recorder.take(OsStr::new(&format!("{stem}.toml")));
+            Ok((name, text, files, meshes))
+        });
+        let (name, text, files, meshes) =
+            packed.map_err(|reports: Vec<Report>| failed(py, &reports, Some(&self.source)))?;
+        let bytes = |files: Vec<(String, Vec<u8>)>| {
+            files.into_iter().map(|(name, bytes)| (name, PyBytes::new(py, &bytes))).collect()
+        };
+        Ok((name, text, bytes(files), bytes(meshes)))
+    }
 }
+
+/// Names with the bytes of their files.
+type Files<'py> = Vec<(String, Bound<'py, PyBytes>)>;
 
 /// Gives a picture another size. A side that is left out follows from the shape that it has.
 fn resize(scene: &mut Scene, width: Option<u32>, height: Option<u32>) {

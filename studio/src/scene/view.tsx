@@ -3,26 +3,26 @@
 import { effect, untracked, useComputed } from '@preact/signals';
 import { type Change, mount, type Movement, type ObjectRef, TreePanel, type Viewer, type ViewScene } from 'snell-viewer';
 import { useEffect, useRef, useState } from 'preact/hooks';
-import type { Store } from '../store';
+import type { Base, Store } from '../store';
 import { editsFor } from './movement';
 import { objectsOf, placeOf, roundTo, type SceneObject, snapOf, type Vec3 } from './objects';
-
-/** Milliseconds until the drawing has the newest picture. */
-const PICTURE = 120;
+import { Pace } from './pace';
 
 /** The drawing of the studio, which the panel beside it takes part in. */
 export class Space {
   readonly viewer: Viewer;
   private readonly ends: (() => void)[] = [];
-  private waiting: ReturnType<typeof setTimeout> | null = null;
+  private readonly pace = new Pace(() => this.show());
+  /** What the drawing has of the store. */
+  private shown: { base: Base | null; view: ViewScene; size: string; editing: string };
   private drag: { object: SceneObject; center: Vec3; radius: number; group: string } | null = null;
 
   constructor(
     parent: HTMLElement,
     private readonly store: Store,
   ) {
-    const { value: revision } = store.revision;
-    this.viewer = mount(parent, { scene: revision!.view }, { panel: false, header: false, toolbar: 'studio' });
+    const { view } = store.revision.peek()!;
+    this.viewer = mount(parent, { scene: view }, { panel: false, header: false, toolbar: 'studio' });
     this.ends.push(
       this.viewer.on('pixel', (x, y) => store.pin([x, y])),
       this.viewer.on('object', (object) => store.select(object?.name ?? null)),
@@ -31,27 +31,22 @@ export class Space {
       this.viewer.on('move', (movement) => this.move(movement)),
       this.viewer.on('moved', () => this.moved()),
     );
-    let base = untracked(() => store.base.value);
-    let drawn: ViewScene | null = null;
-    let live = '';
+    this.shown = { base: store.base.peek(), view, size: '', editing: '' };
     this.ends.push(
       effect(() => {
-        const { view, size } = store.revision.value!;
-        if (view !== drawn) this.viewer.setScene(view, { reset: base !== store.base.value });
-        if (view !== drawn || size.join() !== live) this.viewer.setLivePicture(store.surface.canvas, size);
-        [base, drawn, live] = [store.base.value, view, size.join()];
+        void store.revision.value;
+        // A hand in the drawing must feel what it does; all else can be seen in the picture, whose time this must not take.
+        untracked(() => (this.drag === null ? this.pace.request() : this.pace.flush()));
       }),
       effect(() => {
         void store.frame.value;
-        this.showPictureSoon();
+        this.pace.request();
+      }),
+      effect(() => {
+        void [store.selectedName.value, store.handles.value, store.snaps.value];
+        untracked(() => this.pace.flush());
       }),
       effect(() => this.viewer.setTree(store.tree.value, { panel: store.pinned.value !== null })),
-      effect(() => {
-        const selected = this.refOf(store.selected.value);
-        const { scene } = store.revision.value!;
-        const [handles, snap] = [selected && store.handles.value, store.snaps.value ? snapOf(scene) : null];
-        this.viewer.setObjects({ selected, handles, snap, target: scene.camera.look_at as Vec3 });
-      }),
     );
   }
 
@@ -63,7 +58,7 @@ export class Space {
 
   dispose(): void {
     for (const end of this.ends) end();
-    if (this.waiting !== null) clearTimeout(this.waiting);
+    this.pace.cancel();
     this.viewer.dispose();
   }
 
@@ -95,12 +90,20 @@ export class Space {
     store.edit(editsFor(object, rounded(movement, radius || Math.hypot(...center)), center), { label: `${movement.kind} ${object.name}`, group });
   }
 
-  /** The picture is small in the drawing, which must not take the time of the picture itself. */
-  private showPictureSoon(): void {
-    this.waiting ??= setTimeout(() => {
-      this.waiting = null;
-      this.viewer.pictureChanged();
-    }, PICTURE);
+  private show(): void {
+    const { base, revision, surface, selected, handles, snaps } = this.store;
+    const { scene, view, size } = revision.peek()!;
+    const { shown } = this;
+    this.shown = { base: base.peek(), view, size: size.join(), editing: [selected.peek()?.name, handles.peek(), snaps.peek()].join() };
+    const isNew = view !== shown.view;
+    if (isNew) this.viewer.setScene(view, { reset: this.shown.base !== shown.base });
+    if (isNew || this.shown.size !== shown.size) this.viewer.setLivePicture(surface.canvas, size);
+    if (isNew || this.shown.editing !== shown.editing) {
+      const ref = this.refOf(selected.peek());
+      const snap = snaps.peek() ? snapOf(scene) : null;
+      this.viewer.setObjects({ selected: ref, handles: ref && handles.peek(), snap, target: scene.camera.look_at as Vec3 });
+    }
+    this.viewer.pictureChanged();
   }
 
   private point(id: number | null): void {

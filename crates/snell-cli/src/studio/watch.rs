@@ -1,11 +1,11 @@
 //! A scene as it is read from disk, with everything that was read for it, so that it can be seen when any of that changes.
 
-use snell_formats::files::{Disk, Files, MAX_SCENE_BYTES, sha256};
+use snell_formats::files::{Disk, Files, MAX_SCENE_BYTES, Recorder, sha256};
 use snell_formats::load::load_bytes;
 use snell_formats::{LoadOptions, Loaded, Report};
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
-use std::path::{Component, Path, PathBuf};
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 use std::time::SystemTime;
 
@@ -51,7 +51,7 @@ impl State {
 /// Reads a scene file; `shown` is what it is called. Whether or not it can be read, what was looked at is told.
 pub fn read(shown: &str, path: &Path) -> (Result<(Loaded, Snapshot), Vec<Report>>, Watched) {
     let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-    let reader = Arc::new(Reader { folder, looked_at: Mutex::default(), read: Mutex::default() });
+    let reader = Arc::new(Reader { disk: Recorder::new(folder), looked_at: Mutex::default() });
     let result = scene(shown, path, &reader);
     let mut looked_at = reader.looked_at.lock().map(|mut all| std::mem::take(&mut *all)).unwrap_or_default();
     if result.is_ok() {
@@ -62,111 +62,51 @@ pub fn read(shown: &str, path: &Path) -> (Result<(Loaded, Snapshot), Vec<Report>
 }
 
 fn scene(shown: &str, path: &Path, reader: &Arc<Reader>) -> Result<(Loaded, Snapshot), Vec<Report>> {
-    reader.note(path);
+    reader.note(path.to_owned());
     let text = Disk.read(path, MAX_SCENE_BYTES)?;
     let options = LoadOptions { files: Arc::clone(reader) as _, ..LoadOptions::default() };
     // The names of files begin in its folder, as they do in a page.
-    let name = PathBuf::from(path.file_name().unwrap_or(OsStr::new("scene")));
-    let loaded = load_bytes(shown, &name, &text, Path::new(""), &options)?;
-    let read = reader.read.lock().map(|mut read| std::mem::take(&mut *read)).unwrap_or_default();
-    // Files above the folder of the scene are below one that all of them are in.
-    let above = read.keys().map(|file| steps_up(file)).max().unwrap_or(0);
-    let folder = std::path::absolute(&reader.folder).unwrap_or_default();
-    let folders: Vec<&OsStr> = folder.iter().collect();
-    let prefix: PathBuf = folders[folders.len().saturating_sub(above)..].iter().collect();
-    let files = read.into_iter().map(|(file, bytes)| (name_within(&prefix.join(file)), bytes)).collect();
-    Ok((loaded, Snapshot { name: name_within(&prefix.join(name)), text, files }))
-}
-
-/// How far above a folder a relative name leads at most.
-fn steps_up(file: &Path) -> usize {
-    let (mut depth, mut most) = (0_isize, 0);
-    for part in file.components() {
-        match part {
-            Component::ParentDir => depth -= 1,
-            Component::Normal(_) => depth += 1,
-            Component::CurDir | Component::RootDir | Component::Prefix(_) => {}
-        }
-        most = most.max(-depth);
-    }
-    most.unsigned_abs()
-}
-
-/// A name without `.` and `..`, with `/` between folders.
-fn name_within(path: &Path) -> String {
-    let mut parts = Vec::new();
-    for part in path.components() {
-        match part {
-            Component::Normal(name) => parts.push(name.to_string_lossy()),
-            Component::ParentDir => drop(parts.pop()),
-            Component::CurDir | Component::RootDir | Component::Prefix(_) => {}
-        }
-    }
-    parts.join("/")
+    let name = path.file_name().unwrap_or(OsStr::new("scene"));
+    let loaded = load_bytes(shown, Path::new(name), &text, Path::new(""), &options)?;
+    let (name, files) = reader.disk.take(name);
+    Ok((loaded, Snapshot { name, text, files }))
 }
 
 /// The disk as seen from the folder of a scene. It remembers what was looked at, and what was read.
 #[derive(Debug)]
 struct Reader {
-    folder: PathBuf,
+    disk: Recorder,
     looked_at: Mutex<BTreeMap<PathBuf, Option<State>>>,
-    read: Mutex<BTreeMap<PathBuf, Vec<u8>>>,
 }
 
 impl Reader {
     /// Before it is read, so that no change meanwhile is lost.
-    fn note(&self, path: &Path) {
+    fn note(&self, path: PathBuf) {
         if let Ok(mut looked_at) = self.looked_at.lock() {
-            looked_at.entry(path.to_owned()).or_insert_with(|| State::of(path));
+            looked_at.entry(path).or_insert_with_key(|path| State::of(path));
         }
     }
 }
 
 impl Files for Reader {
     fn read(&self, path: &Path, limit: u64) -> Result<Vec<u8>, Report> {
-        let file = self.folder.join(path);
-        self.note(&file);
-        let bytes = Disk.read(&file, limit)?;
-        if let Ok(mut read) = self.read.lock() {
-            read.insert(path.to_owned(), bytes.clone());
-        }
-        Ok(bytes)
+        self.note(self.disk.path(path));
+        self.disk.read(path, limit)
     }
 
     fn is_file(&self, path: &Path) -> bool {
-        let file = self.folder.join(path);
-        let is_file = Disk.is_file(&file);
+        let is_file = self.disk.is_file(path);
         if !is_file {
-            self.note(&file);
+            self.note(self.disk.path(path));
         }
         is_file
     }
 
     fn is_folder(&self, path: &Path) -> bool {
-        Disk.is_folder(&self.folder.join(path))
+        self.disk.is_folder(path)
     }
 
     fn list(&self, folder: &Path) -> Box<dyn Iterator<Item = PathBuf> + '_> {
-        let shown = folder.to_owned();
-        let on_disk = if folder.as_os_str().is_empty() && self.folder.as_os_str().is_empty() {
-            PathBuf::from(".")
-        } else {
-            self.folder.join(folder)
-        };
-        let names: Vec<_> = Disk.list(&on_disk).filter_map(|path| Some(path.file_name()?.to_owned())).collect();
-        Box::new(names.into_iter().map(move |name| shown.join(name)))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn names_above_the_scene_stay_in_their_places() {
-        for (file, up) in [("a", 0), ("a/../b", 0), ("../a", 1), ("a/../../../b", 2), ("./../x/y", 1), ("/a/b", 0)] {
-            assert_eq!(steps_up(Path::new(file)), up, "{file}");
-        }
-        assert_eq!(name_within(Path::new("scenes/../models/./a.obj")), "models/a.obj");
+        self.disk.list(folder)
     }
 }

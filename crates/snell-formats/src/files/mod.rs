@@ -3,10 +3,14 @@
 #[cfg(feature = "disk")]
 pub mod disk;
 mod in_memory;
+#[cfg(feature = "disk")]
+mod recorder;
 
 #[cfg(feature = "disk")]
 pub use disk::Disk;
 pub use in_memory::InMemory;
+#[cfg(feature = "disk")]
+pub use recorder::{Named, Recorder};
 
 use crate::report::Report;
 use std::fmt::Debug;

@@ -13,7 +13,7 @@ pub use edit::{keys, set};
 pub use locate::steps_at;
 pub use rewrite::rewrite;
 #[cfg(feature = "disk")]
-pub use save::save;
+pub use save::{pack, save};
 pub use write::to_text;
 
 use crate::memory;

@@ -2,7 +2,7 @@
 
 use super::{Syntax, to_text};
 use crate::files::disk::{self, Disk};
-use crate::files::{Files, MAX_SCENE_BYTES, sha256};
+use crate::files::{Files, MAX_SCENE_BYTES, Named, sha256};
 use crate::model::write_ply;
 use crate::report::Report;
 use snell::geometry::TriangleMesh;
@@ -12,33 +12,21 @@ use std::path::{Path, PathBuf};
 /// A mesh with more triangles does not become text: that would take ten times the room, and a hundred times the memory to read.
 const MOST_FACES: usize = 1000;
 
-/// Writes a scene into a file, with meshes of more than 1000 triangles as PLY files beside it, to the bit; returns all files that
-/// belong to it. `heading` stands before the text. The names of the PLY files are made of their content, so that none of them
-/// ever takes the place of another.
+/// Writes a scene into a file, with large meshes as PLY files beside it, as [`pack`] has them; returns all files that belong to it.
+/// `heading` stands before the text.
 ///
 /// # Errors
 /// When a value has no form in a file, what is written would be too large to be read, or writing fails.
-pub fn save(mut scene: Scene, output: &Path, syntax: Syntax, heading: &str) -> Result<Vec<PathBuf>, Report> {
+pub fn save(scene: Scene, output: &Path, syntax: Syntax, heading: &str) -> Result<Vec<PathBuf>, Report> {
     let target = disk::behind_links(output);
-    let mut beside: Vec<(PathBuf, Vec<u8>)> = Vec::new();
-    for (number, mesh) in scene.meshes.iter_mut().enumerate() {
-        if let Some(triangles) = take_triangles(mesh) {
-            let mut bytes = Vec::new();
-            write_ply(&triangles, &mut bytes).map_err(|e| Report::error(format!("a mesh cannot be written: {e}")))?;
-            let hash = sha256([&bytes]);
-            let stem = target.file_stem().unwrap_or_default().to_string_lossy();
-            let file = format!("{stem}-mesh-{}.ply", &hash[..12]);
-            beside.push((target.with_file_name(&file), bytes));
-            mesh.name.get_or_insert_with(|| format!("mesh {}", number + 1));
-            mesh.file = Some(file);
-        }
-    }
-    let text = heading.to_owned() + &to_text(&scene, syntax)?;
+    let (text, beside) = pack(scene, &target.file_stem().unwrap_or_default().to_string_lossy(), syntax)?;
+    let text = heading.to_owned() + &text;
     if text.len() as u64 > MAX_SCENE_BYTES {
         let message =
             format!("this scene has {} bytes as text; more than {} are not read", text.len(), MAX_SCENE_BYTES);
         return Err(Report::error(message).help("put what stands in many places into one [[mesh]] with `instances`"));
     }
+    let beside: Vec<_> = beside.into_iter().map(|(name, bytes)| (target.with_file_name(name), bytes)).collect();
     for (path, bytes) in &beside {
         let there = path.symlink_metadata().is_ok();
         if !there {
@@ -50,6 +38,26 @@ pub fn save(mut scene: Scene, output: &Path, syntax: Syntax, heading: &str) -> R
     }
     disk::write(output, |out| out.write_all(text.as_bytes()))?;
     Ok(beside.into_iter().map(|(path, _)| path).chain([output.to_owned()]).collect())
+}
+
+/// A scene as a text, and its meshes of more than 1000 triangles as PLY files, to the bit, by their names. Those are made of `stem` and of
+/// their content, so that none of them ever takes the place of another.
+///
+/// # Errors
+/// When a value has no form in a file.
+pub fn pack(mut scene: Scene, stem: &str, syntax: Syntax) -> Result<(String, Named), Report> {
+    let mut beside = Vec::new();
+    for (number, mesh) in scene.meshes.iter_mut().enumerate() {
+        if let Some(triangles) = take_triangles(mesh) {
+            let mut bytes = Vec::new();
+            write_ply(&triangles, &mut bytes).map_err(|e| Report::error(format!("a mesh cannot be written: {e}")))?;
+            let file = format!("{stem}-mesh-{}.ply", &sha256([&bytes])[..12]);
+            beside.push((file.clone(), bytes));
+            mesh.name.get_or_insert_with(|| format!("mesh {}", number + 1));
+            mesh.file = Some(file);
+        }
+    }
+    Ok((to_text(&scene, syntax)?, beside))
 }
 
 /// The triangles of a mesh that has no file and is too large for a text.
