@@ -113,10 +113,17 @@ bundle_studio() {
     target/ci/snell-wasm-bundle target/wasm32-unknown-unknown/wasm/snell_wasm.wasm target/studio
 }
 
-# The studio as any host serves it, in target/studio-dist. Needs snell besides; with --quick, scenes that take long have no hash.
+# The studio as any host serves it, in target/studio-dist, and for notebooks, in the Python package. Needs snell besides; with --quick,
+# scenes that take long have no hash.
 build_studio() {
+    local page=python/snell/notebook/page
     need_studio_packages
     bundle_studio
     node studio/scripts/scenes.mjs target/ci/snell target/studio "$@"
-    (cd studio && npm run build --silent)
+    (cd studio && npm run build --silent && npm run build-notebook --silent)
+    mkdir -p $page
+    cp target/studio-notebook/widget.js $page/
+    gzip -9nc target/studio-notebook/studio.js >$page/studio.js.gz
+    gzip -9nc target/studio-notebook/studio.css >$page/studio.css.gz
+    gzip -9nc target/studio/snell_wasm_bg.wasm >$page/snell.wasm.gz
 }

@@ -61,10 +61,7 @@ browser_module() {
 }
 
 # The whole page, as people use it.
-studio() {
-    build_studio --quick
-    (cd studio && SNELL=$PWD/../target/ci/snell npm test --silent)
-}
+studio() { (cd studio && SNELL=$PWD/../target/ci/snell npm test --silent); }
 
 viewer() {
     need_viewer_packages
@@ -78,15 +75,16 @@ stage 'build' cargo build --locked --quiet --workspace --profile ci
 stage 'kernels are inlined' kernels_are_inlined
 stage 'Rust tests' cargo test --locked --quiet --workspace --profile ci
 stage 'Python tests: the slow oracle, the schema' oracle
-stage 'the Python package' python_package
+stage 'the same bits in WASM' same_bits_in_wasm
+stage 'the module for browsers' browser_module
+stage 'the studio is built' build_studio --quick
+stage 'the Python package, which has it' python_package
 stage 'the viewer, in Chromium' viewer
-stage 'a notebook in JupyterLab, in Chromium' jupyterlab
+stage 'notebooks in JupyterLab, in Chromium' jupyterlab
 stage 'documentation' documentation
 stage 'fuzz targets compile' cargo check --locked --quiet --manifest-path fuzz/Cargo.toml --target-dir target/fuzz
 stage 'the library for ARM' cargo check --locked --quiet --package snell --target aarch64-unknown-linux-gnu --profile ci
 stage 'the kernels without the standard library' kernels_alone
-stage 'the same bits in WASM' same_bits_in_wasm
-stage 'the module for browsers' browser_module
 stage 'the studio, in Chromium' studio
 
 printf '\n── all passed\n'

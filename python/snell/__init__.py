@@ -15,6 +15,7 @@ from .channels import Channels
 from .errors import OpticsError, PictureError, RenderError, SceneError, SnellError, SnellWarning
 from .movie.frames import Sweep
 from .notebook.interact import Interactive, interact
+from .notebook.studio import Studio
 from .notebook.view import View
 from .part import Part
 from .parts import Box, Camera, Disc, Globe, Lathe, Light, Material, Mesh, Plane, Render, Sky, Sphere, Texture
@@ -27,5 +28,6 @@ __all__ = [
     "Box", "Camera", "Channels", "Difference", "Disc", "Figure", "Globe", "Hit", "Interactive", "Lathe", "Light",
     "LightAtHit", "Local", "Material", "Mesh", "Node", "OpticsError", "Part", "Picture", "PictureError", "Plane",
     "RayTree", "Render", "RenderError", "Sample", "Scene", "SceneError", "Sightings", "Sky", "SnellError",
-    "SnellWarning", "Sphere", "Sweep", "Texture", "View", "__version__", "interact", "optics", "scenes", "sweep",
+    "SnellWarning", "Sphere", "Studio", "Sweep", "Texture", "View", "__version__", "interact", "optics", "scenes",
+    "sweep",
 ]  # fmt: skip

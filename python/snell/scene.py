@@ -24,6 +24,7 @@ from .values import Color, Value, plain, whole
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
+    from .notebook.studio import Studio
     from .notebook.view import View
 
 _LISTS: Mapping[str, type[Value]] = {
@@ -468,6 +469,30 @@ class Scene(Value):
         <View of gallery/ball, 64 x 43>
         """
         return self.render(progress=progress, **how).view(css_height=css_height)
+
+    def studio(self, *, css_height: str | None = None) -> Studio:
+        """Open the scene in Snell Studio, in a notebook: drag things, move sliders, ask pixels.
+
+        The scene stays as it is; `Studio.scene` is the one that was edited.
+
+        Parameters
+        ----------
+        css_height : str, optional
+            Of the page, like ``"50rem"``.
+
+        Raises
+        ------
+        SceneError
+            If the scene cannot be drawn.
+
+        Examples
+        --------
+        >>> Scene.load("gallery/ball").studio()
+        <Studio of gallery/ball>
+        """
+        from .notebook.studio import Studio  # noqa: PLC0415 # only where there is a notebook
+
+        return Studio(self, css_height)
 
     def explain(self, x: int, y: int, **settings: Unpack[Settings]) -> RayTree:
         """Say why a pixel has its colour, without rendering the others.

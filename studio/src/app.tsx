@@ -1,7 +1,7 @@
 /** The page: the picture and the scene side by side, and a panel that says why, what and from which text. */
 
 import { effect, useSignal } from '@preact/signals';
-import { useEffect, useMemo, useState } from 'preact/hooks';
+import { useEffect, useState } from 'preact/hooks';
 import { AskPanel } from './ask/panel';
 import { DropZone, useFiles } from './files/open';
 import { Gallery } from './gallery';
@@ -12,8 +12,8 @@ import { type Space, SpaceView } from './scene/view';
 import { SourcePanel } from './source/panel';
 import { follow, openFirst, openWork } from './start';
 import { Status } from './status';
-import { WorkStorage } from './storage';
-import { Store } from './store';
+import type { WorkKeeper } from './storage';
+import type { Store } from './store';
 import { Tabs } from './tabs';
 import { ExerciseView, exerciseOf } from './tour/exercise';
 import { EXERCISES } from './tour/exercises';
@@ -21,9 +21,7 @@ import { STEPS } from './tour/steps';
 import { stepOf, Tour } from './tour/tour';
 import { Welcome } from './tour/welcome';
 
-export function App() {
-  const store = useMemo(() => new Store(), []);
-  const storage = useMemo(() => new WorkStorage((words) => (store.notes.value = [...store.notes.value, { message: words }])), []);
+export function App({ store, work }: { store: Store; work: WorkKeeper }) {
   const [space, setSpace] = useState<Space | null>(null);
   const tab = useSignal('why');
   const gallery = useSignal(false);
@@ -34,15 +32,15 @@ export function App() {
   useEffect(() => {
     // For tests, and for the curious.
     Object.assign(window, { snell: store });
-    void begin(store, storage).then((isNew) => (welcome.value = isNew));
+    void begin(store, work).then((isNew) => (welcome.value = isNew));
     const moved = () => {
       fragment.value = location.hash;
-      if (location.hash.length > 1 && !isLesson(location.hash)) void openFirst(store, storage, location.hash);
+      if (location.hash.length > 1 && !isLesson(location.hash)) void openFirst(store, work, location.hash);
     };
     window.addEventListener('hashchange', moved);
     const keys = (event: KeyboardEvent) => shortcut(event, store);
     window.addEventListener('keydown', keys);
-    const leave = () => void storage.flush();
+    const leave = () => void work.flush();
     window.addEventListener('pagehide', leave);
     const theme = effect(() => {
       const { value } = store.theme;
@@ -61,7 +59,7 @@ export function App() {
   const exercise = exerciseOf(fragment.value);
   const go = (to: string) => {
     // The scene of a lesson is not one's work, which is kept for afterwards.
-    void storage.flush();
+    void work.flush();
     location.hash = to;
     welcome.value = false;
     tab.value = 'why';
@@ -69,7 +67,7 @@ export function App() {
   const end = () => {
     plainAddress();
     fragment.value = '';
-    void storage.load().then((work) => (work ? openWork(store, work) : undefined));
+    void work.load().then((kept) => (kept ? openWork(store, kept) : undefined));
   };
 
   return (
@@ -77,7 +75,7 @@ export function App() {
       <div class="studio">
         <Header
           store={store}
-          storage={storage}
+          work={work}
           openGallery={() => (gallery.value = true)}
           openFiles={files.ask}
           startTour={() => go('tour/1')}
@@ -111,7 +109,7 @@ export function App() {
   );
 }
 
-async function begin(store: Store, storage: WorkStorage): Promise<boolean> {
+async function begin(store: Store, work: WorkKeeper): Promise<boolean> {
   try {
     await store.start();
   } catch (error) {
@@ -124,7 +122,7 @@ async function begin(store: Store, storage: WorkStorage): Promise<boolean> {
     return false;
   }
   // A lesson opens its scenes itself.
-  const { isNew } = isLesson(location.hash) ? { isNew: false } : await openFirst(store, storage, location.hash);
+  const { isNew } = isLesson(location.hash) ? { isNew: false } : await openFirst(store, work, location.hash);
   let opened = { base: store.base.value, text: store.revision.value?.text };
   effect(() => {
     const [base, revision] = [store.base.value, store.revision.value];
@@ -133,7 +131,7 @@ async function begin(store: Store, storage: WorkStorage): Promise<boolean> {
     // Once it is changed, the scene is not that of the address any more: a reload must not bring that one back.
     if (revision.text !== opened.text && location.hash !== '') plainAddress();
     const draft = store.draft.value;
-    storage.save({ name: base.name, text: revision.text, files: 'files' in base.given ? base.given.files : [], ...(draft !== null && { draft }) });
+    work.save({ name: base.name, text: revision.text, files: 'files' in base.given ? base.given.files : [], ...(draft !== null && { draft }) });
   });
   return isNew;
 }
@@ -143,7 +141,7 @@ function isLesson(fragment: string): boolean {
 }
 
 function plainAddress(): void {
-  history.replaceState(null, '', location.pathname + location.search);
+  history.replaceState(null, '', location.href.split('#')[0]);
 }
 
 function shortcut(event: KeyboardEvent, store: Store): void {

@@ -5,20 +5,20 @@ import { explanationPage } from './files/explanation';
 import { copy, download } from './files/save';
 import { Menu } from './menu';
 import { asCommand, asPython, type Copied, stem } from './share/code';
-import { encode } from './share/link';
-import type { WorkStorage } from './storage';
+import { encode, isLinkable } from './share/link';
+import type { WorkKeeper } from './storage';
 import type { Store } from './store';
 
 interface Props {
   store: Store;
-  storage: WorkStorage;
+  work: WorkKeeper;
   openGallery(): void;
   openFiles(): void;
   startTour(): void;
   startExercises(): void;
 }
 
-export function Header({ store, storage, openGallery, openFiles, startTour, startExercises }: Props) {
+export function Header({ store, work, openGallery, openFiles, startTour, startExercises }: Props) {
   const { value: undo } = store.undoLabel;
   const { value: redo } = store.redoLabel;
   const said = useSignal('');
@@ -42,6 +42,18 @@ export function Header({ store, storage, openGallery, openFiles, startTour, star
     const base = store.base.value!;
     const files = 'files' in base.given ? base.given.files.map(([file]) => file) : [];
     return { name: base.name, files, ...(store.pristine.value ? {} : { text: store.revision.value!.text }) };
+  };
+  const link = {
+    title: 'Copy a link',
+    hint: 'with the whole scene',
+    act: () =>
+      attempt(async () => {
+        const base = store.base.value!;
+        const files = 'files' in base.given ? base.given.files : [];
+        const fragment = await encode({ name: base.name, text: store.revision.value!.text, files });
+        await copy(new URL(fragment, location.href).href);
+        say('The link is copied');
+      }),
   };
   return (
     <header class="head">
@@ -84,18 +96,7 @@ export function Header({ store, storage, openGallery, openFiles, startTour, star
       <Menu
         title="Share"
         actions={[
-          {
-            title: 'Copy a link',
-            hint: 'with the whole scene',
-            act: () =>
-              attempt(async () => {
-                const base = store.base.value!;
-                const files = 'files' in base.given ? base.given.files : [];
-                const fragment = await encode({ name: base.name, text: store.revision.value!.text, files });
-                await copy(new URL(fragment, location.href).href);
-                say('The link is copied');
-              }),
-          },
+          ...(isLinkable() ? [link] : []),
           copied('command', () => asCommand(scene())),
           copied('Python', () => asPython(scene())),
         ]}
@@ -118,7 +119,7 @@ export function Header({ store, storage, openGallery, openFiles, startTour, star
                 download(`${name()}-${tree.pixel.join('-')}.html`, page, 'text/html');
               }),
           },
-          { title: 'Forget my work in this browser', act: () => attempt(async () => (await storage.clear(), say('Nothing is kept any more'))) },
+          ...(work.clear ? [{ title: 'Forget my work in this browser', act: () => attempt(async () => (await work.clear!(), say('Nothing is kept any more'))) }] : []),
         ]}
       />
       <button

@@ -3,13 +3,13 @@
 import type { Finding, Given } from './engine/protocol';
 import { SCENES } from './scenes';
 import { decode } from './share/link';
-import type { Work, WorkStorage } from './storage';
+import type { Work, WorkKeeper } from './storage';
 import type { Base, Store } from './store';
 
 export const FIRST = 'lecture/default';
 
 /** What was found: whether somebody is here for the first time. */
-export async function openFirst(store: Store, storage: WorkStorage, fragment: string): Promise<{ isNew: boolean }> {
+export async function openFirst(store: Store, keeper: WorkKeeper, fragment: string): Promise<{ isNew: boolean }> {
   try {
     const shared = await decode(fragment);
     if (shared !== null) {
@@ -30,7 +30,7 @@ export async function openFirst(store: Store, storage: WorkStorage, fragment: st
     if (store.revision.value === null) await store.open(builtin(FIRST));
     return { isNew: false };
   }
-  const work = await storage.load();
+  const work = await keeper.load();
   if (work !== null) {
     try {
       await openWork(store, work);

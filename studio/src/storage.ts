@@ -11,6 +11,18 @@ export interface Work {
   draft?: string;
 }
 
+/** Where the work is kept: in this browser, or by Python. */
+export interface WorkKeeper {
+  /** What was kept before. */
+  load(): Promise<Work | null>;
+  /** Keeps this instead, a moment later. */
+  save(work: Work): void;
+  /** Keeps now what would be kept a moment later. */
+  flush(): Promise<void>;
+  /** Forgets everything, where that is for the page to do. */
+  clear?(): Promise<void>;
+}
+
 /** What a browser provides, as far as it does. */
 export interface Browser {
   /** For all tabs. */
@@ -45,7 +57,7 @@ const NO_ROOM = 'This browser has no room to keep the scene: a reload will lose 
 const UNREADABLE = 'What this browser has kept of your last scene cannot be read, and is left out.';
 const NO_FILES = 'This browser has kept your last scene, but not the files that it needs: add them again.';
 
-export class WorkStorage {
+export class WorkStorage implements WorkKeeper {
   private readonly tab: Promise<string>;
   private id: string | null = null;
   private waiting: Work | null = null;

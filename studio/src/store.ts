@@ -2,7 +2,7 @@
 
 import { batch, computed, effect, signal } from '@preact/signals';
 import type { RayTreeDocument } from 'snell-viewer';
-import { Cancelled, Engine, Refusal } from './engine/engine';
+import { Cancelled, Engine, type EngineParts, Refusal } from './engine/engine';
 import type { Answers, Change, CompleteRevision, Edit, Finding, Given, PictureOptions, Sighting } from './engine/protocol';
 import { History, type Version } from './history';
 import { Surface } from './picture/surface';
@@ -135,38 +135,40 @@ export class Store {
   private openedText = '';
   private readonly question = { number: 0, asking: false };
 
-  constructor(threads?: number) {
-    this.engine = new Engine(
-      {
-        patches: (patches, covered) => {
-          if (this.target.put(patches, covered)) this.frame.value++;
-          if (covered) this.covered?.();
-        },
-        progress: (pixels, rays) => {
-          if (this.target !== this.surface) return;
-          const [width, height] = this.revision.value!.size;
-          this.progress.value = { pixels, rays, total: width * height, time: performance.now() - this.begun };
-        },
-        finished: (outcome) => {
-          if (this.target !== this.surface) return;
-          this.outcome.value = outcome;
-          this.renderComparison();
-        },
-        refused: (findings) => {
-          this.refused.value = findings;
-          this.stopped.value = true;
-          this.covered?.();
-        },
-        broken: (message) => void this.recover(message),
+  constructor(parts: EngineParts) {
+    this.engine = new Engine(parts, {
+      patches: (patches, covered) => {
+        if (this.target.put(patches, covered)) this.frame.value++;
+        if (covered) this.covered?.();
       },
-      threads,
-    );
+      progress: (pixels, rays) => {
+        if (this.target !== this.surface) return;
+        const [width, height] = this.revision.value!.size;
+        this.progress.value = { pixels, rays, total: width * height, time: performance.now() - this.begun };
+      },
+      finished: (outcome) => {
+        if (this.target !== this.surface) return;
+        this.outcome.value = outcome;
+        this.renderComparison();
+      },
+      refused: (findings) => {
+        this.refused.value = findings;
+        this.stopped.value = true;
+        this.covered?.();
+      },
+      broken: (message) => void this.recover(message),
+    });
   }
 
   /** Starts the engine. */
   async start(): Promise<void> {
     await this.engine.start();
     this.busy.value = null;
+  }
+
+  /** Tells something that does not depend on the scene. */
+  note(words: string): void {
+    this.notes.value = [...this.notes.value, { message: words }];
   }
 
   /** Opens a scene in place of the one that is shown, with a text that it has been given since. Rejects with a `Refusal`. */

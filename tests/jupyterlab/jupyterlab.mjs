@@ -89,6 +89,20 @@ export async function runAll(page) {
   if (errors.length > 0) throw new Error(errors.join('\n'));
 }
 
+/** Runs a cell, and returns what it says. */
+export async function run(page, number) {
+  return page.evaluate(async (number) => {
+    const { content } = jupyterapp.shell.currentWidget;
+    content.deselectAll();
+    content.activeCellIndex = number;
+    await jupyterapp.commands.execute('notebook:run-cell');
+    const outputs = content.widgets[number].model.outputs.toJSON();
+    const error = outputs.find(({ output_type }) => output_type === 'error');
+    if (error) throw new Error(`${error.ename}: ${error.evalue}`);
+    return outputs.map(({ data }) => data?.['text/plain'] ?? '').join('');
+  }, number);
+}
+
 export async function save(page) {
   await page.evaluate(() => jupyterapp.commands.execute('docmanager:save'));
 }

@@ -2,6 +2,7 @@
 
 export type * from './data';
 export type { Change, Editing, Handles, Movement, ObjectRef } from './editing';
+export { hideStillBefore, jupyterScheme, onJupyterTheme } from './jupyter';
 export { TreePanel } from './tree-panel';
 export { mount, type Viewer, type ViewerEvents, type ViewerOptions } from './viewer';
 export { validate, ViewerDataError } from './validate';

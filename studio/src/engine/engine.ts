@@ -1,7 +1,6 @@
 /** The engine as the page sees it: a scene that changes, questions about it, and a picture that comes bit by bit. */
 
 import type { ViewScene } from 'snell-viewer';
-import wasmUrl from '../../../target/studio/snell_wasm_bg.wasm?url';
 import type {
   Answers,
   Change,
@@ -17,6 +16,15 @@ import type {
   ToDesk,
   ToRenderer,
 } from './protocol';
+
+/** What the engine is made of: a page of its own and one in a notebook load it in different ways. */
+export interface EngineParts {
+  /** Address of the module. */
+  module: string;
+  desk(): Worker;
+  /** `number`: from 1. */
+  renderer(number: number): Worker;
+}
 
 export interface EngineEvents {
   /** Something of the picture has been rendered. `covered`: each pixel has been, or one near it. */
@@ -73,6 +81,7 @@ export class Engine {
   private started: Promise<void> | null = null;
 
   constructor(
+    private readonly parts: EngineParts,
     private readonly events: EngineEvents,
     readonly threads = Math.max(1, Math.min(MOST_RENDERERS, navigator.hardwareConcurrency || 2)),
   ) {}
@@ -88,16 +97,13 @@ export class Engine {
 
   private async startWorkers(): Promise<void> {
     // One that could not be loaded is tried again.
-    this.module ??= load(new URL(wasmUrl, document.baseURI).href).catch((error: unknown) => {
+    this.module ??= load(this.parts.module).catch((error: unknown) => {
       this.module = null;
       throw error;
     });
     // Their scripts are loaded while the module is compiled.
-    const desk = new Worker(new URL('./desk.worker.ts', import.meta.url), { type: 'module', name: 'desk' });
-    const workers = Array.from(
-      { length: this.threads },
-      (_, index) => new Worker(new URL('./renderer.worker.ts', import.meta.url), { type: 'module', name: `renderer ${index + 1}` }),
-    );
+    const desk = this.parts.desk();
+    const workers = Array.from({ length: this.threads }, (_, index) => this.parts.renderer(index + 1));
     for (const worker of [desk, ...workers]) {
       worker.onerror = (event) => this.broken(event.message || 'a part of the page could not be loaded');
     }

@@ -31,6 +31,9 @@ export const MAX_LINK = 32 * 1024;
  *  important as well that links are short. */
 const MAX_BYTES = 8 * 1024 * 1024;
 
+/** Does this page have an address that others can open? One in a notebook has none. */
+export const isLinkable = () => location.protocol !== 'about:';
+
 /** The fragment of a link to a scene. */
 export async function encode({ name, text, files = [], view }: Shared): Promise<string> {
   const head: Head = { name, text, files: files.map(([file, bytes]) => [file, bytes.length]), ...(view !== undefined && { view }) };

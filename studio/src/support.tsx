@@ -15,3 +15,13 @@ export function missing(): string | null {
   }
   return null;
 }
+
+/** In place of the studio. */
+export function Sorry({ lacks }: { lacks: string }) {
+  return (
+    <main class="sorry">
+      <h1>Snell Studio</h1>
+      <p>{lacks}</p>
+    </main>
+  );
+}
