@@ -21,12 +21,12 @@ declare global {
   }
 }
 
-export function launch(): Promise<Browser> {
+export function launch(more: string[] = []): Promise<Browser> {
   if (!existsSync(CHROMIUM)) throw new Error('Chromium is missing: apt-get install chromium');
   if (!existsSync(`${DIST}index.html`)) throw new Error('The studio has not been built: make studio');
   mkdirSync(OUT, { recursive: true });
   // As on a computer without a graphics card: the page is put together in software, and only what is in 3D is drawn by SwiftShader.
-  return chromium.launch({ executablePath: CHROMIUM, args: ['--no-sandbox', '--enable-unsafe-swiftshader'] });
+  return chromium.launch({ executablePath: CHROMIUM, args: ['--no-sandbox', '--enable-unsafe-swiftshader', ...more] });
 }
 
 /** As plain as `python -m http.server`: no headers but the type. */
