@@ -7,7 +7,7 @@ use snell::film::transfer::Encoding;
 use snell::film::{Crop, Film, Rgb};
 use snell::scene::{Rounding, Transfer};
 use snell_formats::Report;
-use snell_formats::picture::{self, Format, Picture};
+use snell_formats::picture::{self, Format, Picture, Writing};
 
 pub fn run(args: &DiffArgs) -> Outcome {
     if args.tolerance.is_nan() || args.tolerance < 0.0 {
@@ -46,7 +46,7 @@ pub fn run(args: &DiffArgs) -> Outcome {
             finished: vec![true; differences.len()],
         };
         let encoding = Encoding { transfer: Transfer::Linear, rounding: Rounding::Round };
-        picture::write(output, format, &film, encoding, None).or_fail(FAILED)?;
+        Writing { format, encoding, threads: 0 }.write(output, &film, None).or_fail(FAILED)?;
     }
     if compared.max > args.tolerance { Err(Failure { code: FAILED, reports: Vec::new() }) } else { Ok(()) }
 }

@@ -7,7 +7,7 @@ use crate::say::{FAILED, Failure, OrFail, Outcome, SCENE, USAGE, tell};
 use snell::film::BYTES_PER_PIXEL;
 use snell::film::transfer::Encoding;
 use snell_formats::part::{Merge, PartFile};
-use snell_formats::picture::{self, Format};
+use snell_formats::picture::{Format, Writing};
 use snell_formats::{disk, memory};
 
 pub fn run(args: &MergeArgs) -> Outcome {
@@ -37,8 +37,8 @@ pub fn run(args: &MergeArgs) -> Outcome {
     };
     let encoding =
         Encoding { transfer: recipe.transfer.unwrap_or_default(), rounding: recipe.rounding.unwrap_or_default() };
-    let text = recipe.to_json();
-    output::write(&args.output, |out| picture::write_to(out, format, &film, encoding, Some(&text)))?;
+    let (text, writing) = (recipe.to_json(), Writing { format, encoding, threads: 0 });
+    output::write(&args.output, |out| writing.write_to(out, &film, || Some(text)))?;
     let (lost, hash) = (statistics.lost, recipe.film_sha256.as_deref().unwrap_or_default());
     let [x, y] = [lost.worst_pixel(film.full_size[0]).0, lost.worst_pixel(film.full_size[0]).1];
     say(

@@ -10,7 +10,7 @@ use snell::film::{Crop, Film, Rgb};
 use snell::render::Options;
 use snell::world::{CompiledScene, World};
 use snell_formats::Report;
-use snell_formats::picture::{self, Format};
+use snell_formats::picture::{self, Format, Writing};
 use snell_formats::recipe::Recipe;
 use snell_formats::report::known_names;
 use std::path::Path;
@@ -41,7 +41,8 @@ pub fn run(compiled: &CompiledScene, mut recipe: Recipe, args: &RenderArgs, outp
         let encoding = compiled.scene().render.encoding();
         recipe.remember(&film);
         let text = recipe.to_json();
-        output::write(output, |out| picture::write_to(out, format, &film, encoding, Some(&text)))?;
+        let writing = Writing { format, encoding, threads: args.threads.into() };
+        output::write(output, |out| writing.write_to(out, &film, || Some(text)))?;
         return same_film(&recipe, before.as_deref());
     }
     let most = recipe.paths.unwrap_or_default() as usize;
@@ -60,7 +61,9 @@ pub fn run(compiled: &CompiledScene, mut recipe: Recipe, args: &RenderArgs, outp
     let whole = film([width, height], split.picture)?;
     recipe.remember(&whole);
     let text = recipe.to_json();
-    output::write(output, |out| picture::write_layers_to(out, [width, height], &whole.pixels, &named, Some(&text)))?;
+    let threads = args.threads.into();
+    let size = [width, height];
+    output::write(output, |out| picture::write_layers_to(out, size, &whole.pixels, &named, threads, Some(&text)))?;
     say(args, &format!("{}: {} layers that add up to the picture", output::shown(output), named.len()));
     same_film(&recipe, before.as_deref())
 }

@@ -14,7 +14,7 @@ use snell::render::{Options, Progress, RenderError, Rendered, render};
 use snell::scene::{Warning, WarningCode};
 use snell::world::{CompiledScene, World};
 use snell_formats::load::Loaded;
-use snell_formats::picture::{self, Format};
+use snell_formats::picture::{Format, Writing};
 use snell_formats::recipe::Recipe;
 use snell_formats::{Report, memory};
 use std::path::{Path, PathBuf};
@@ -87,10 +87,14 @@ impl Ready {
     /// Writes the picture with its recipe.
     pub fn save(&mut self, rendered: &Rendered, args: &RenderArgs, output: &Path) -> Outcome {
         let _writing = phase(args, "writing", &output::shown(output));
-        self.recipe.remember(&rendered.film);
-        let text = self.recipe.to_json();
-        let (format, encoding) = (self.format, self.encoding());
-        output::write(output, |out| picture::write_to(out, format, &rendered.film, encoding, Some(&text)))
+        let writing = Writing { format: self.format, encoding: self.encoding(), threads: args.threads.into() };
+        let recipe = &mut self.recipe;
+        output::write(output, |out| {
+            writing.write_to(out, &rendered.film, || {
+                recipe.remember(&rendered.film);
+                Some(recipe.to_json())
+            })
+        })
     }
 
     /// The same, or keeps it elsewhere.
@@ -98,7 +102,8 @@ impl Ready {
         self.save(rendered, args, output).map_err(|Failure { code, mut reports }| {
             if let Some(report) = reports.pop() {
                 let text = self.recipe.to_json();
-                reports.push(rescue(report, output, self.format, rendered, self.encoding(), &text));
+                let writing = Writing { format: self.format, encoding: self.encoding(), threads: args.threads.into() };
+                reports.push(rescue(report, output, writing, rendered, &text));
             }
             Failure { code, reports }
         })
@@ -118,15 +123,8 @@ impl Ready {
 }
 
 /// The picture could not be written where it should go: it is kept elsewhere if possible, so that no work is lost.
-fn rescue(
-    report: Report,
-    output: &Path,
-    format: Format,
-    rendered: &Rendered,
-    encoding: Encoding,
-    recipe: &str,
-) -> Report {
-    let ending = match format {
+fn rescue(report: Report, output: &Path, writing: Writing, rendered: &Rendered, recipe: &str) -> Report {
+    let ending = match writing.format {
         Format::Png { .. } => "png",
         Format::Ppm { .. } => "ppm",
         Format::Exr => "exr",
@@ -135,7 +133,7 @@ fn rescue(
     let stem = output.file_stem().unwrap_or_default().to_string_lossy();
     let name = format!("{}.{ending}", if is_standard(output) { "picture" } else { &stem });
     let elsewhere = std::env::temp_dir().join(format!("snell-{}-{name}", std::process::id()));
-    match picture::write(&elsewhere, format, &rendered.film, encoding, Some(recipe)) {
+    match writing.write(&elsewhere, &rendered.film, Some(recipe)) {
         Ok(()) => report.help(format!("the picture is kept as {}", elsewhere.display())),
         Err(_) => report,
     }

@@ -174,7 +174,8 @@ fn a_picture_made_by_an_older_default_is_made_again_by_it() {
         let png = snell_formats::picture::Format::Png { sixteen_bit: false };
         let encoding =
             snell::film::transfer::Encoding { transfer: scene.render.transfer, rounding: scene.render.rounding };
-        snell_formats::picture::write(&at.join(name), png, &film, encoding, Some(&text.to_string())).unwrap();
+        let writing = snell_formats::picture::Writing { format: png, encoding, threads: 1 };
+        writing.write(&at.join(name), &film, Some(&text.to_string())).unwrap();
     };
     old(&[], "old.png");
     // That the film is the same is looked at by its hash, which the picture remembers.
@@ -221,7 +222,8 @@ fn an_older_image_plane_stays_where_it_was() {
     let film = film_of(&then);
     let encoding = snell::film::transfer::Encoding { transfer: then.render.transfer, rounding: then.render.rounding };
     let png = snell_formats::picture::Format::Png { sixteen_bit: false };
-    snell_formats::picture::write(&at.join("old.png"), png, &film, encoding, Some(&recipe.to_string())).unwrap();
+    let writing = snell_formats::picture::Writing { format: png, encoding, threads: 1 };
+    writing.write(&at.join("old.png"), &film, Some(&recipe.to_string())).unwrap();
     let told = stderr(&run(at, &["render", "--from", "old.png", "-o", "again.png"]));
     assert!(told.contains("`near` = -1") && !told.contains("differ"), "{told}");
     run(at, &["diff", "again.png", "then.png"]);

@@ -7,7 +7,7 @@
 //! | [`recipe`]: how a picture was made | the same |
 //!
 //! ```text
-//!  a file, or a built-in scene ──▶ Source ── load ──▶ Scene ── snell ──▶ Film ── picture::write ──▶ a file with its recipe
+//!  a file, or a built-in scene ──▶ Source ── load ──▶ Scene ── snell ──▶ Film ── Writing ──▶ a file with its recipe
 //!                                              │                                                        │
 //!                                              └─▶ Report, where anything is wrong          a picture ──┘ read again: load, diff
 //! ```
@@ -15,7 +15,7 @@
 //! ```
 //! use snell::render::{Options, Settings, render};
 //! use snell::world::World;
-//! use snell_formats::picture::{self, Format};
+//! use snell_formats::picture::{Format, Writing};
 //! use snell_formats::scene_file::{self, Syntax};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -24,7 +24,8 @@
 //! scene.render.size = [40, 30];
 //! let film = render(&World::new(&scene)?, &Settings::from(&scene), &Options::default())?.film;
 //! let mut bytes = std::io::Cursor::new(Vec::new());
-//! picture::write_to(&mut bytes, Format::Npy, &film, scene.render.encoding(), None)?;
+//! let writing = Writing { format: Format::Npy, encoding: scene.render.encoding(), threads: 0 };
+//! writing.write_to(&mut bytes, &film, || None)?;
 //! assert!(bytes.into_inner().starts_with(b"\x93NUMPY"));
 //! # Ok(())
 //! # }

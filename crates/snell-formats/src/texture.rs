@@ -72,7 +72,7 @@ pub(crate) fn read_with_hash(files: &dyn Files, path: &Path, srgb: bool) -> Resu
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::picture::Format;
+    use crate::picture::{Format, Writing};
     use ::png::{BitDepth, ColorType};
     use snell::film::transfer::{Encoding, Rounding, Transfer};
     use snell::film::{Crop, Film};
@@ -185,7 +185,7 @@ mod tests {
         ] {
             let path = folder.path().join(name);
             let encoding = Encoding { transfer: Transfer::Srgb, rounding: Rounding::Round };
-            picture::write(&path, format, &film, encoding, None).unwrap();
+            Writing { format, encoding, threads: 1 }.write(&path, &film, None).unwrap();
             let image = read_image(&path, true).unwrap();
             for (texel, pixel) in image.pixels().iter().zip(&film.pixels) {
                 for (read, written) in texel.iter().zip(pixel.to_array()) {
@@ -220,7 +220,7 @@ mod tests {
         film.finished.fill(true);
         let path = folder.path().join("bright.npy");
         let encoding = Encoding { transfer: Transfer::Linear, rounding: Rounding::Round };
-        picture::write(&path, Format::Npy, &film, encoding, None).unwrap();
+        Writing { format: Format::Npy, encoding, threads: 1 }.write(&path, &film, None).unwrap();
         let (message, help) = error("bright.npy", &std::fs::read(&path).unwrap());
         assert!(message.contains("column 1, row 0") && help.contains("clip"), "{message}");
         let missing = read_image(&folder.path().join("no.png"), true).unwrap_err();

@@ -38,7 +38,7 @@ fn files() -> Vec<(&'static str, Vec<u8>)> {
     let mut film = Film::new([2, 1], Crop { x: 0, y: 0, width: 2, height: 1 }).unwrap();
     film.pixels = vec![Rgb::gray(1.0), Rgb::new(0.2, 0.4, 0.6)];
     film.finished.fill(true);
-    let png = picture::png_bytes(&film, Render::new(Integrator::Whitted, [2, 1]).encoding(), None).unwrap();
+    let png = picture::png_bytes(&film, Render::new(Integrator::Whitted, [2, 1]).encoding(), 1, None).unwrap();
     let two = MODEL.replace("mtllib one.mtl\nusemtl red\n", "");
     vec![
         ("scenes/models/one.obj", MODEL.into()),

@@ -18,7 +18,7 @@ use snell::render::{Grid, Options, PartialFilm, RenderError, Rendered, render};
 use snell::scene::Warning;
 use snell::trace::Statistics;
 use snell::world::CompiledScene;
-use snell_formats::picture::{self, Format};
+use snell_formats::picture::{self, Format, Writing};
 use snell_formats::{Report, part};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -181,7 +181,7 @@ impl NativePicture {
 
     /// As a PNG of 8 bit.
     fn png<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        let bytes = py.detach(|| picture::png_bytes(&self.film, self.encoding(), Some(&self.recipe())));
+        let bytes = py.detach(|| picture::png_bytes(&self.film, self.encoding(), 0, Some(&self.recipe())));
         bytes.map(|bytes| PyBytes::new(py, &bytes)).map_err(|report| failed(py, &report))
     }
 
@@ -193,7 +193,8 @@ impl NativePicture {
                 Format::Ppm { .. } => Format::Ppm { binary },
                 other => other,
             };
-            picture::write(&path, format, &self.film, self.encoding(), Some(&self.recipe()))
+            let writing = Writing { format, encoding: self.encoding(), threads: 0 };
+            writing.write(&path, &self.film, Some(&self.recipe()))
         });
         written.map_err(|report| failed(py, &report))
     }
@@ -341,7 +342,7 @@ pub fn png<'py>(py: Python<'py>, array: PyReadonlyArray3<'py, f64>) -> PyResult<
     }
     film.finished.fill(true);
     let encoding = Encoding { transfer: Transfer::Linear, rounding: Rounding::Round };
-    let bytes = py.detach(|| picture::png_bytes(&film, encoding, None));
+    let bytes = py.detach(|| picture::png_bytes(&film, encoding, 0, None));
     bytes.map(|bytes| PyBytes::new(py, &bytes)).map_err(|report| failed(py, &report))
 }
 

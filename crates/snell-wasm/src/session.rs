@@ -11,7 +11,7 @@ use snell::optics::glass::CATALOGUE;
 use snell::render::{Options, Progress};
 use snell::world::CompiledScene;
 use snell_formats::files::{InMemory, MAX_SCENE_BYTES, in_memory, sha256};
-use snell_formats::picture::{self, Format};
+use snell_formats::picture::{Format, Writing};
 use snell_formats::recipe::Changes;
 use snell_formats::report::known_names;
 use snell_formats::scene_file::{self, Syntax};
@@ -356,8 +356,8 @@ impl Session {
         let film = self.film()?;
         let mut recipe = self.ready.recipe.clone();
         recipe.remember(film);
-        let (text, encoding) = (recipe.to_json(), self.ready.compiled.scene().render.encoding());
-        let written = in_memory(|out| picture::write_to(out, format, film, encoding, Some(&text)));
+        let writing = Writing { format, encoding: self.ready.compiled.scene().render.encoding(), threads: 1 };
+        let written = in_memory(|out| writing.write_to(out, film, || Some(recipe.to_json())));
         or_throw(written.map_err(|error| Report::error(format!("the picture cannot be written: {error}"))))
     }
 }

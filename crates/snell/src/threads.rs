@@ -52,9 +52,13 @@ pub fn count(asked: usize) -> usize {
 }
 
 #[cfg(not(feature = "rayon"))]
-pub(crate) use alone::*;
+pub(crate) use alone::run;
+#[cfg(not(feature = "rayon"))]
+pub use alone::{beside, join, map, share};
 #[cfg(feature = "rayon")]
-pub(crate) use together::*;
+pub(crate) use together::run;
+#[cfg(feature = "rayon")]
+pub use together::{beside, join, map, share};
 
 #[cfg(feature = "rayon")]
 mod together {
@@ -79,7 +83,7 @@ mod together {
 
     /// Does something on so many threads, 0 for those by default; it is told whether there is more than one, which [`map`]
     /// and [`join`] then share out.
-    pub(crate) fn share<R: Send>(threads: usize, work: impl FnOnce(bool) -> R + Send) -> R {
+    pub fn share<R: Send>(threads: usize, work: impl FnOnce(bool) -> R + Send) -> R {
         match pool(threads) {
             Some(pool) => pool.install(|| work(true)),
             None => work(false),
@@ -87,7 +91,7 @@ mod together {
     }
 
     /// What `of` makes of each item, in their order.
-    pub(crate) fn map<T, R: Send, I>(parallel: bool, items: I, of: impl Fn(T) -> R + Sync + Send) -> Vec<R>
+    pub fn map<T, R: Send, I>(parallel: bool, items: I, of: impl Fn(T) -> R + Sync + Send) -> Vec<R>
     where
         I: IntoIterator<Item = T> + IntoParallelIterator<Item = T>,
     {
@@ -95,8 +99,21 @@ mod together {
     }
 
     /// Does both, at the same time if a thread is free.
-    pub(crate) fn join<A: Send, B: Send>(a: impl FnOnce() -> A + Send, b: impl FnOnce() -> B + Send) -> (A, B) {
+    pub fn join<A: Send, B: Send>(a: impl FnOnce() -> A + Send, b: impl FnOnce() -> B + Send) -> (A, B) {
         rayon::join(a, b)
+    }
+
+    /// What `here` returns, which is done by the caller itself; one of so many threads, 0 for those by default, does `elsewhere`
+    /// at the same time.
+    pub fn beside<R, M: Send>(threads: usize, elsewhere: impl FnOnce() -> M + Send, here: impl FnOnce() -> R) -> R {
+        if let Some(pool) = pool(threads) {
+            return pool.in_place_scope(|scope| {
+                scope.spawn(|_| drop(elsewhere()));
+                here()
+            });
+        }
+        drop(elsewhere());
+        here()
     }
 }
 
@@ -106,16 +123,21 @@ mod alone {
         worker();
     }
 
-    pub(crate) fn share<R>(_: usize, work: impl FnOnce(bool) -> R) -> R {
+    pub fn share<R>(_: usize, work: impl FnOnce(bool) -> R) -> R {
         work(false)
     }
 
-    pub(crate) fn map<T, R>(_: bool, items: impl IntoIterator<Item = T>, of: impl Fn(T) -> R) -> Vec<R> {
+    pub fn map<T, R>(_: bool, items: impl IntoIterator<Item = T>, of: impl Fn(T) -> R) -> Vec<R> {
         items.into_iter().map(of).collect()
     }
 
-    pub(crate) fn join<A, B>(a: impl FnOnce() -> A, b: impl FnOnce() -> B) -> (A, B) {
+    pub fn join<A, B>(a: impl FnOnce() -> A, b: impl FnOnce() -> B) -> (A, B) {
         (a(), b())
+    }
+
+    pub fn beside<R, M>(_: usize, elsewhere: impl FnOnce() -> M, here: impl FnOnce() -> R) -> R {
+        drop(elsewhere());
+        here()
     }
 }
 

@@ -10,7 +10,7 @@ use snell::film::transfer::{Encoding, Rounding, Transfer};
 use snell::film::{Crop, Film, Rgb};
 use snell::render::Options;
 use snell_formats::Report;
-use snell_formats::picture::{self, Format};
+use snell_formats::picture::{Format, Writing};
 use std::fmt::Write;
 
 /// Paths that are listed.
@@ -51,7 +51,7 @@ pub fn run(asked: &Asked, object: &str, args: &ExplainArgs) -> Outcome {
         }
         film.finished.fill(true);
         let encoding = Encoding { transfer: Transfer::Linear, rounding: Rounding::Round };
-        picture::write(file, format, &film, encoding, None).or_fail(FAILED)?;
+        Writing { format, encoding, threads: 0 }.write(file, &film, None).or_fail(FAILED)?;
         tell(&file.display().to_string());
     }
     say::print(&plain(&text))

@@ -1,14 +1,28 @@
 //! EXR: 32-bit float, linear, the data window the part that was rendered, the display window the whole picture.
 
+use super::stripes::Stripes;
 use super::{Picture, checked_pixels};
 use crate::files::Out;
+use exr::block::UncompressedBlock;
+use exr::block::writer::ChunksWriter;
+use exr::image::write::layers::{LayersWriter, WritableLayers};
 use exr::prelude::*;
 use snell::film::{Film, Rgb};
 use std::io::Cursor;
 
 const KEYWORD: &str = "snell";
 
-pub(super) fn write(out: &mut dyn Out, film: &Film, recipe: Option<&str>) -> std::io::Result<()> {
+/// Scan lines from top to bottom, which every reader knows, 16 in a block.
+const ENCODING: Encoding =
+    Encoding { compression: Compression::ZIP16, blocks: Blocks::ScanLines, line_order: LineOrder::Increasing };
+
+/// Writes a film. While its first blocks are compressed, `recipe` says what is kept with it.
+pub(super) fn write(
+    out: &mut dyn Out,
+    film: &Film,
+    threads: usize,
+    recipe: impl FnOnce() -> Option<String> + Send,
+) -> std::io::Result<()> {
     let (width, height) = (film.width(), film.height());
     let pixel = |at: Vec2<usize>| {
         let index = at.y() * width + at.x();
@@ -18,22 +32,53 @@ pub(super) fn write(out: &mut dyn Out, film: &Film, recipe: Option<&str>) -> std
     let mut attributes = LayerAttributes::named("");
     attributes.software_name = Some(Text::from(concat!("Snell ", env!("CARGO_PKG_VERSION"))));
     attributes.layer_position = Vec2(film.crop.x as i32, film.crop.y as i32);
-    remember(&mut attributes, recipe);
     let display = IntegerBounds::from_dimensions(Vec2(film.full_size[0] as usize, film.full_size[1] as usize));
-    // One scan line block after the other, in this thread: the bytes do not depend on the machine.
-    let encoding = Encoding { compression: Compression::ZIP16, ..Encoding::FAST_LOSSLESS };
-    let failed = |e: Error| std::io::Error::other(e.to_string());
+    let attributes_of_image = ImageAttributes::new(display);
     if film.is_finished() {
         let channels = SpecificChannels::rgb(|at| {
             let (r, g, b, _) = pixel(at);
             (r, g, b)
         });
-        let layer = Layer::new((width, height), attributes, encoding, channels);
-        image(display, layer).write().non_parallel().to_buffered(out).map_err(failed)
+        let layer = Layer::new((width, height), attributes, ENCODING, channels);
+        write_blocks(out, &attributes_of_image, &layer, threads, recipe)
     } else {
-        let layer = Layer::new((width, height), attributes, encoding, SpecificChannels::rgba(pixel));
-        image(display, layer).write().non_parallel().to_buffered(out).map_err(failed)
+        let layer = Layer::new((width, height), attributes, ENCODING, SpecificChannels::rgba(pixel));
+        write_blocks(out, &attributes_of_image, &layer, threads, recipe)
     }
+}
+
+/// Compresses blocks on several threads, and writes them in their order: the bytes do not depend on the machine.
+fn write_blocks<'l, L: WritableLayers<'l>>(
+    out: &mut dyn Out,
+    attributes: &ImageAttributes,
+    layers: &'l L,
+    threads: usize,
+    recipe: impl FnOnce() -> Option<String> + Send,
+) -> std::io::Result<()> {
+    let headers = layers.infer_headers(attributes);
+    let writer = layers.create_writer(&headers);
+    let blocks: Vec<_> = exr::block::enumerate_ordered_header_block_indices(&headers).collect();
+    let compress = |range: std::ops::Range<usize>| {
+        let (number, index) = blocks[range.start];
+        let data = writer.extract_uncompressed_block(&headers, index);
+        UncompressedBlock { index, data }.compress_to_chunk(&headers).map(|chunk| (number, chunk))
+    };
+    let mut stripes = Stripes::new(blocks.len(), 1, threads);
+    let (mut batch, recipe) = stripes.next_and(compress, recipe);
+
+    let mut complete = headers.clone();
+    remember(&mut complete[0].own_attributes, recipe.as_deref());
+    exr::block::write(out, complete, true, |_, chunks| {
+        while !batch.is_empty() {
+            for compressed in std::mem::take(&mut batch) {
+                let (number, chunk) = compressed?;
+                chunks.write_chunk(number, chunk)?;
+            }
+            batch = stripes.next(compress);
+        }
+        Ok(())
+    })
+    .map_err(|e| std::io::Error::other(e.to_string()))
 }
 
 fn remember(attributes: &mut LayerAttributes, recipe: Option<&str>) {
@@ -44,7 +89,7 @@ fn remember(attributes: &mut LayerAttributes, recipe: Option<&str>) {
 }
 
 /// Writes layers of a picture by their names as EXR, first the picture itself; each has the channels R, G and B. All have
-/// `size[0]·size[1]` pixels, row by row. `recipe` is kept, as in other pictures.
+/// `size[0]·size[1]` pixels, row by row. `threads` compress them, 0 for those by default. `recipe` is kept, as in other pictures.
 ///
 /// # Errors
 /// When writing fails.
@@ -53,28 +98,23 @@ pub fn write_layers(
     size: [u32; 2],
     picture: &[Rgb],
     layers: &[(String, Vec<Rgb>)],
+    threads: usize,
     recipe: Option<&str>,
 ) -> std::io::Result<()> {
     let size = Vec2(size[0] as usize, size[1] as usize);
-    let encoding = Encoding { compression: Compression::ZIP16, ..Encoding::FAST_LOSSLESS };
     let layer = |name: &str, pixels: &[Rgb]| {
         let channel = |value: fn(&Rgb) -> f64| FlatSamples::F32(pixels.iter().map(|c| value(c) as f32).collect());
         let channels = [("R", channel(|c| c.r)), ("G", channel(|c| c.g)), ("B", channel(|c| c.b))];
         let channels = channels.into_iter().map(|(name, samples)| AnyChannel::new(name, samples)).collect();
         // Arrows are no characters of the format; other bytes go through as they are.
         let name = Text::from_bytes_unchecked(name.replace('→', "->").bytes().collect::<attribute::TextBytes>());
-        Layer::new(size, LayerAttributes::named(name), encoding, AnyChannels::sort(channels))
+        Layer::new(size, LayerAttributes::named(name), ENCODING, AnyChannels::sort(channels))
     };
     let named = layers.iter().map(|(name, pixels)| (name.as_str(), pixels.as_slice()));
-    let mut layer_data: Layers<AnyChannels<FlatSamples>> =
+    let layers: Layers<AnyChannels<FlatSamples>> =
         [("picture", picture)].into_iter().chain(named).map(|(name, pixels)| layer(name, pixels)).collect();
-    remember(&mut layer_data[0].attributes, recipe);
-    let image = Image { attributes: ImageAttributes::new(IntegerBounds::from_dimensions(size)), layer_data };
-    image.write().non_parallel().to_buffered(out).map_err(|e| std::io::Error::other(e.to_string()))
-}
-
-fn image<C>(display: IntegerBounds, layer: Layer<C>) -> Image<Layer<C>> {
-    Image { attributes: ImageAttributes::new(display), layer_data: layer }
+    let attributes = ImageAttributes::new(IntegerBounds::from_dimensions(size));
+    write_blocks(out, &attributes, &layers, threads, || recipe.map(str::to_owned))
 }
 
 fn recipe(attributes: &LayerAttributes) -> Option<String> {

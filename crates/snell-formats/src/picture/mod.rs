@@ -4,10 +4,11 @@ mod exr;
 pub(crate) mod npy;
 mod png;
 mod ppm;
+mod stripes;
 
 pub use exr::write_layers as write_layers_to;
 
-use crate::files::Out;
+use crate::files::{Out, in_memory};
 use crate::report::{Report, nearest};
 use snell::film::transfer::Encoding;
 use snell::film::{Film, Rgb};
@@ -77,45 +78,61 @@ impl Format {
     }
 }
 
-/// Writes a film. Unfinished pixels are transparent in EXR, and in PNG where they are black; NaN in NPY; as they are in PPM.
-///
-/// `recipe` is kept in PNG and EXR: what is needed to render the picture again.
-///
-/// # Errors
-/// When writing fails; what was there before stays.
-#[cfg(feature = "disk")]
-pub fn write(path: &Path, format: Format, film: &Film, encoding: Encoding, recipe: Option<&str>) -> Result<(), Report> {
-    crate::disk::write(path, |out| write_to(out, format, film, encoding, recipe))
+/// How a film becomes a file.
+#[derive(Clone, Copy, Debug)]
+pub struct Writing {
+    /// The kind of file.
+    pub format: Format,
+    /// The curve of PNG and PPM.
+    pub encoding: Encoding,
+    /// Threads that work on it, which changes no byte of it; 0 for those by default.
+    pub threads: usize,
 }
 
-/// The same to anything that can be written to and gone back in.
-///
-/// # Errors
-/// When writing fails.
-pub fn write_to(
-    out: &mut dyn Out,
-    format: Format,
-    film: &Film,
-    encoding: Encoding,
-    recipe: Option<&str>,
-) -> std::io::Result<()> {
-    match format {
-        Format::Png { sixteen_bit } => png::write(out, film, encoding, sixteen_bit, recipe),
-        Format::Ppm { binary } => ppm::write(out, film, encoding, binary),
-        Format::Exr => exr::write(out, film, recipe),
-        Format::Npy => npy::write(out, film),
+/// Fewer pixels are done before other threads have begun.
+const WORTH_THREADS: usize = 1 << 16;
+
+impl Writing {
+    /// Writes a film. Unfinished pixels are transparent in EXR, and in PNG where they are black; NaN in NPY; as they are in PPM.
+    ///
+    /// `recipe` is kept in PNG and EXR: what is needed to render the picture again.
+    ///
+    /// # Errors
+    /// When writing fails; what was there before stays.
+    #[cfg(feature = "disk")]
+    pub fn write(self, path: &Path, film: &Film, recipe: Option<&str>) -> Result<(), Report> {
+        crate::disk::write(path, |out| self.write_to(out, film, || recipe.map(str::to_owned)))
+    }
+
+    /// The same to anything that can be written to and gone back in. The recipe is made while the pixels are encoded.
+    ///
+    /// # Errors
+    /// When writing fails.
+    pub fn write_to(
+        self,
+        out: &mut dyn Out,
+        film: &Film,
+        recipe: impl FnOnce() -> Option<String> + Send,
+    ) -> std::io::Result<()> {
+        let Self { format, encoding, threads } = self;
+        let threads = if film.pixels.len() < WORTH_THREADS { 1 } else { threads };
+        match format {
+            Format::Png { sixteen_bit } => png::write(out, film, encoding, sixteen_bit, threads, recipe),
+            Format::Ppm { binary } => ppm::write(out, film, encoding, binary, threads, || drop(recipe())),
+            Format::Exr => exr::write(out, film, threads, recipe),
+            Format::Npy => snell::threads::beside(threads, recipe, || npy::write(out, film)),
+        }
     }
 }
 
-/// A film as the bytes of a PNG of 8 bit, as [`write()`] has it.
+/// A film as the bytes of a PNG of 8 bit, as [`Writing`] has it; `threads` work on it, 0 for those by default.
 ///
 /// # Errors
 /// When it is too large for one.
-pub fn png_bytes(film: &Film, encoding: Encoding, recipe: Option<&str>) -> Result<Vec<u8>, Report> {
-    let mut bytes = Vec::new();
-    png::write(&mut bytes, film, encoding, false, recipe)
-        .map_err(|e| Report::error(format!("the picture cannot become a PNG: {e}")))?;
-    Ok(bytes)
+pub fn png_bytes(film: &Film, encoding: Encoding, threads: usize, recipe: Option<&str>) -> Result<Vec<u8>, Report> {
+    let writing = Writing { format: Format::Png { sixteen_bit: false }, encoding, threads };
+    in_memory(|out| writing.write_to(out, film, || recipe.map(str::to_owned)))
+        .map_err(|e| Report::error(format!("the picture cannot become a PNG: {e}")))
 }
 
 /// A picture that was read, with pixels of some kind.

@@ -1,25 +1,71 @@
 //! PPM: `P3` as text and `P6` as bytes, the course's format.
 
+use super::stripes::Stripes;
 use super::{Picture, checked_pixels, fallible};
 use snell::film::transfer::Encoding;
 use snell::film::{Film, Rgb};
 use std::io::Write;
+use std::ops::Range;
 
-pub(super) fn write(out: &mut dyn Write, film: &Film, encoding: Encoding, binary: bool) -> std::io::Result<()> {
+/// Rows that one thread turns into text.
+const STRIPE: usize = 32;
+
+pub(super) fn write(
+    out: &mut dyn Write,
+    film: &Film,
+    encoding: Encoding,
+    binary: bool,
+    threads: usize,
+    meanwhile: impl FnOnce() + Send,
+) -> std::io::Result<()> {
     let (magic, width, height) = (if binary { "P6" } else { "P3" }, film.width(), film.height());
     writeln!(out, "{magic}\n{width} {height} 255")?;
-    for row in film.pixels.chunks_exact(width) {
-        if binary {
-            for pixel in row {
-                out.write_all(&pixel.to_array().map(|c| encoding.encode(c, 255) as u8))?;
+    let words = Words::new();
+    let encode = |rows: Range<usize>| {
+        let mut codes = vec![0; 3 * width];
+        let mut bytes = Vec::with_capacity(rows.len() * 3 * width * if binary { 1 } else { 4 });
+        for y in rows {
+            encoding.encode_all(&film.numbers()[3 * width * y..][..3 * width], 255, &mut codes);
+            if binary {
+                bytes.extend(codes.iter().map(|&code| code as u8));
+            } else {
+                words.push(&codes, &mut bytes);
             }
-        } else {
-            let words: Vec<String> =
-                row.iter().flat_map(|p| p.to_array()).map(|c| encoding.encode(c, 255).to_string()).collect();
-            writeln!(out, "{}", words.join(" "))?;
         }
+        bytes
+    };
+    let mut stripes = Stripes::new(film.height(), STRIPE, threads);
+    let (mut batch, ()) = stripes.next_and(encode, meanwhile);
+    while !batch.is_empty() {
+        batch.iter().try_for_each(|bytes| out.write_all(bytes))?;
+        batch = stripes.next(encode);
     }
     Ok(())
+}
+
+/// What each code is as text, with a space after it, and how long that is.
+struct Words([([u8; 4], usize); 256]);
+
+impl Words {
+    fn new() -> Self {
+        Self(std::array::from_fn(|code| {
+            let (text, mut bytes) = (format!("{code} "), [0; 4]);
+            bytes[..text.len()].copy_from_slice(text.as_bytes());
+            (bytes, text.len())
+        }))
+    }
+
+    /// A row of codes, which ends with a line feed instead of a space.
+    fn push(&self, codes: &[u16], bytes: &mut Vec<u8>) {
+        for &code in codes {
+            let (word, length) = self.0[usize::from(code as u8)];
+            // All four bytes, of which the rest is written over: a length that is known is copied in one step.
+            bytes.extend_from_slice(&word);
+            bytes.truncate(bytes.len() - (4 - length));
+        }
+        bytes.pop();
+        bytes.push(b'\n');
+    }
 }
 
 pub(super) fn read<P, F: Fn(Rgb) -> P>(

@@ -1,5 +1,6 @@
 //! From linear light to the integers of a picture file, and back.
 
+use crate::lanes::{Kernel, LaneWidth, Lanes, MAX_WIDTH, dispatch, pow};
 use serde::{Deserialize, Serialize};
 
 /// The curve from linear light to 8 and 16 bit.
@@ -38,23 +39,75 @@ pub struct Encoding {
 impl Encoding {
     /// One component.
     pub fn encode(self, linear: f64, max: u16) -> u16 {
+        self.code(linear, f64::from(max)) as u16
+    }
+
+    /// Many components at once, with the same bits. `codes` are as many as `linear`.
+    ///
+    /// # Panics
+    /// If they are not.
+    pub fn encode_all(self, linear: &[f64], max: u16, codes: &mut [u16]) {
+        assert_eq!(linear.len(), codes.len(), "a code for each component");
+        dispatch(LaneWidth::default(), EncodeAll { encoding: self, linear, max, codes });
+    }
+
+    /// Whole numbers from 0 to `max`.
+    #[inline(always)]
+    fn code<L: Lanes>(self, linear: L, max: f64) -> L {
         let value = match self.transfer {
             Transfer::Linear => linear,
-            Transfer::Srgb => srgb(linear),
+            Transfer::Srgb => srgb_of(linear),
         };
-        let scaled = f64::from(max) * value;
-        let whole = match self.rounding {
-            Rounding::Truncate => scaled,
-            Rounding::Round => (scaled + 0.5).floor(),
+        let half = match self.rounding {
+            Rounding::Truncate => 0.0,
+            Rounding::Round => 0.5,
         };
-        // The cast truncates, turns NaN into 0 and clips.
-        (whole.clamp(0.0, f64::from(max))) as u16
+        let scaled = L::splat(max) * value + L::splat(half);
+        // NaN is not above 0.
+        L::select(L::splat(0.0).lt(scaled), scaled, L::splat(0.0)).min(L::splat(max))
+    }
+}
+
+struct EncodeAll<'a> {
+    encoding: Encoding,
+    linear: &'a [f64],
+    max: u16,
+    codes: &'a mut [u16],
+}
+
+impl Kernel for EncodeAll<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let Self { encoding, linear, max, codes } = self;
+        let max = f64::from(max);
+        let mut wide = [0.0; MAX_WIDTH];
+        let (chunks, rest) = (linear.chunks_exact(L::WIDTH), linear.chunks_exact(L::WIDTH).remainder());
+        let (some, last) = codes.split_at_mut(linear.len() - rest.len());
+        for (values, codes) in chunks.zip(some.chunks_exact_mut(L::WIDTH)) {
+            encoding.code(L::load(values), max).store(&mut wide[..L::WIDTH]);
+            for (code, value) in codes.iter_mut().zip(wide) {
+                // Cut off: it is not below 0.
+                *code = value as u16;
+            }
+        }
+        for (&value, code) in rest.iter().zip(last) {
+            *code = encoding.code(value, max) as u16;
+        }
     }
 }
 
 /// The curve of IEC 61966-2-1:1999, from linear light to the encoded value, both 0 to 1.
 pub fn srgb(linear: f64) -> f64 {
-    if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * libm::pow(linear, 1.0 / 2.4) - 0.055 }
+    srgb_of(linear)
+}
+
+#[inline(always)]
+fn srgb_of<L: Lanes>(linear: L) -> L {
+    let number = L::splat;
+    let power = number(1.055) * pow(linear, number(1.0 / 2.4)) - number(0.055);
+    L::select(linear.le(number(0.003_130_8)), number(12.92) * linear, power)
 }
 
 /// The inverse of [`srgb`]: from the encoded value to linear light, both 0 to 1.
@@ -80,6 +133,25 @@ mod tests {
         }
         assert_eq!(linear(f64::NAN, Rounding::Round), 0);
         assert_eq!(linear(f64::INFINITY, Rounding::Truncate), 255);
+    }
+
+    #[test]
+    fn all_at_once_are_as_one_by_one_at_every_width() {
+        let mut linear: Vec<f64> = (0..4000).map(|i| f64::from(i) / 3500.0 - 0.05).collect();
+        linear.extend([f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -0.0, 1e300, 1e-300, 0.003_130_8]);
+        for (transfer, rounding) in
+            [Transfer::Linear, Transfer::Srgb].into_iter().flat_map(|t| [(t, Rounding::Round), (t, Rounding::Truncate)])
+        {
+            for max in [255, 65535] {
+                let encoding = Encoding { transfer, rounding };
+                let one_by_one: Vec<u16> = linear.iter().map(|&value| encoding.encode(value, max)).collect();
+                for width in LaneWidth::ALL {
+                    let mut codes = vec![7; linear.len()];
+                    dispatch(width, EncodeAll { encoding, linear: &linear, max, codes: &mut codes });
+                    assert_eq!(codes, one_by_one, "{encoding:?}, {max}, {width:?}");
+                }
+            }
+        }
     }
 
     #[test]
