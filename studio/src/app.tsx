@@ -57,6 +57,8 @@ export function App() {
     };
   }, []);
 
+  useEffect(() => void Object.assign(window, { snellSpace: space }), [space]);
+
   const step = stepOf(fragment.value);
   const exercise = exerciseOf(fragment.value);
   const go = (to: string) => {

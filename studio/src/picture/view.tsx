@@ -1,14 +1,14 @@
 /** The picture: point at it to ask, click to pin, drag things, zoom to the pixels. */
 
 import { useEffect, useRef } from 'preact/hooks';
-import { untracked, useSignal, useSignalEffect } from '@preact/signals';
+import { untracked, useComputed, useSignal, useSignalEffect } from '@preact/signals';
 import { placeOf, roundTo, type Vec3 } from '../scene/objects';
 import { editsFor } from '../scene/movement';
 import type { Pixel, Store } from '../store';
 import { ComparisonSlider } from './comparison';
 import { dragged } from './drag';
 import { Overlay } from './overlay';
-import { fit, lay, panBy, pixelAt, type Zoom, zoomAbout } from './zoom';
+import { aligned, fit, lay, panBy, pixelAt, type Zoom, zoomAbout } from './zoom';
 
 /** Pixels of the screen that a pointer may move between down and up in a click. */
 const CLICK = 4;
@@ -39,14 +39,15 @@ export function PictureView({ store }: { store: Store }) {
     // Each change is drawn, and of most edits there is none.
     if (to.scale !== scale || to.x !== x || to.y !== y) zoom.value = to;
   };
+  /** As it is on this screen. */
+  const placed = useComputed(() => aligned(zoom.value, devicePixelRatio));
 
   useEffect(() => {
     const { canvas } = store.surface;
     box.current!.prepend(canvas);
     overlay.current = new Overlay(box.current!, store);
     const resizes = new ResizeObserver(() => {
-      if (!free.current) fitted();
-      overlay.current!.draw(zoom.value);
+      zoom.value = free.current ? { ...zoom.value } : fit(size(), room());
     });
     resizes.observe(box.current!);
     const wheel = (event: WheelEvent) => {
@@ -67,9 +68,9 @@ export function PictureView({ store }: { store: Store }) {
     if (store.revision.value && !free.current) untracked(fitted);
   });
   useSignalEffect(() => {
-    lay(store.surface.canvas, zoom.value);
+    lay(store.surface.canvas, placed.value);
     void [store.hovered.value, store.pinned.value, store.tree.value, store.sighting.value, store.branch.value, store.outcome.value];
-    overlay.current?.draw(zoom.value);
+    overlay.current?.draw(placed.value);
   });
 
   const at = (event: MouseEvent) => {
@@ -78,7 +79,7 @@ export function PictureView({ store }: { store: Store }) {
   };
   const pixelOf = (event: MouseEvent): Pixel | null => {
     const { x, y } = at(event);
-    return pixelAt(zoom.value, x, y, size());
+    return pixelAt(placed.value, x, y, size());
   };
 
   /** What a drag moves that begins where this is seen first. */
@@ -192,7 +193,7 @@ export function PictureView({ store }: { store: Store }) {
       onPointerLeave={() => pointers.current.size === 0 && store.hover(null)}
       onKeyDown={key}
     >
-      {store.comparison.value && <ComparisonSlider store={store} comparison={store.comparison.value} zoom={zoom} />}
+      {store.comparison.value && <ComparisonSlider store={store} comparison={store.comparison.value} zoom={placed} />}
       <ZoomButtons
         zoom={store.revision.value ? zoom.value.scale : 1}
         fit={() => {

@@ -1,0 +1,100 @@
+/** Fingers instead of a mouse. */
+
+import type { CDPSession, Page } from 'playwright-core';
+import { expect, test } from 'vitest';
+import { finished, placeOf, studio } from './page';
+
+const { on } = studio();
+
+type Place = { x: number; y: number };
+
+test('a tap asks, a finger drags, two fingers zoom, and a finger moves what was zoomed', () =>
+  on(
+    '#lecture/default',
+    async (page) => {
+      const before = await finished(page);
+      const fingers = await touching(page);
+      const tapped = await placeOf(page, [300, 300]);
+      await page.touchscreen.tap(tapped.x, tapped.y);
+      await page.waitForFunction(() => window.snell.pinned.value?.join() === '300,300' && window.snell.tree.value !== null);
+
+      const ball = await placeOf(page, [256, 256]);
+      await fingers([[ball, { x: ball.x + 60, y: ball.y }]]);
+      await page.waitForFunction(() => window.snell.revision.value!.scene.sphere![0]!.center[0] > 52);
+      await page.getByRole('button', { name: 'Undo' }).tap();
+      await page.waitForFunction(() => window.snell.revision.value!.scene.sphere![0]!.center[0] === 50);
+      expect(await finished(page)).toBe(before);
+      expect(await page.evaluate(() => window.snell.undoLabel.value)).toBe(null);
+
+      // Three times as far apart, about a place that stays where it is.
+      const about = await placeOf(page, [60, 440]);
+      const fitted = await zoomOf(page);
+      const beside = (distance: number): Place => ({ x: about.x + distance, y: about.y });
+      await fingers([[beside(-20), beside(-60)], [beside(20), beside(60)]]);
+      expect((await zoomOf(page)) / fitted).toBeCloseTo(3, 5);
+      const stays = await placeOf(page, [60, 440]);
+      expect(Math.hypot(stays.x - about.x, stays.y - about.y)).toBeLessThan(1);
+      // The fingers have pinned nothing, and moved nothing.
+      expect(await page.evaluate(() => window.snell.pinned.value)).toEqual([300, 300]);
+      expect(await page.evaluate(() => window.snell.undoLabel.value)).toBe(null);
+
+      // Nothing is met there that could be dragged instead.
+      await fingers([[about, { x: about.x + 30, y: about.y - 20 }]]);
+      const moved = await placeOf(page, [60, 440]);
+      expect(moved.x - stays.x).toBeGreaterThan(20);
+      expect(moved.y - stays.y).toBeLessThan(-10);
+    },
+    { hasTouch: true },
+  ));
+
+test('a long press asks for a pixel as a tap does', () =>
+  on(
+    '#lecture/default',
+    async (page) => {
+      await finished(page);
+      const { x, y } = await placeOf(page, [300, 300]);
+      const client = await page.context().newCDPSession(page);
+      await client.send('Input.dispatchTouchEvent', { type: 'touchStart', touchPoints: [{ x, y }] });
+      await page.waitForFunction(() => window.snell.tree.value?.pixel.join() === '300,300');
+      await page.waitForTimeout(900);
+      await client.send('Input.dispatchTouchEvent', { type: 'touchEnd', touchPoints: [] });
+      await page.waitForFunction(() => window.snell.pinned.value?.join() === '300,300');
+    },
+    { hasTouch: true },
+  ));
+
+test('a finger turns the drawing', () =>
+  on(
+    '#lecture/default',
+    async (page) => {
+      await page.waitForFunction(() => window.snellSpace != null);
+      const eye = () => page.evaluate(() => window.snellSpace!.viewer['drawing']!.stage.camera.position.toArray());
+      const before = await eye();
+      const { x, y, height } = (await page.locator('.drawing canvas').first().boundingBox())!;
+      const fingers = await touching(page);
+      await fingers([[{ x: x + 40, y: y + 0.7 * height }, { x: x + 140, y: y + 0.7 * height }]]);
+      const after = await eye();
+      expect(Math.hypot(...after.map((value, at) => value - before[at]!))).toBeGreaterThan(0.1 * Math.hypot(...before));
+    },
+    { hasTouch: true },
+  ));
+
+/** Moves fingers over the page, each from one place to another, in steps. */
+async function touching(page: Page): Promise<(ways: [from: Place, to: Place][]) => Promise<void>> {
+  const client: CDPSession = await page.context().newCDPSession(page);
+  return async (ways) => {
+    const at = (part: number) => ways.map(([from, to], id) => ({ x: from.x + part * (to.x - from.x), y: from.y + part * (to.y - from.y), id }));
+    await client.send('Input.dispatchTouchEvent', { type: 'touchStart', touchPoints: at(0) });
+    for (let step = 1; step <= 8; step++) {
+      await client.send('Input.dispatchTouchEvent', { type: 'touchMove', touchPoints: at(step / 8) });
+      // A hand is not faster than the screen.
+      await page.evaluate(() => new Promise(requestAnimationFrame));
+    }
+    await client.send('Input.dispatchTouchEvent', { type: 'touchEnd', touchPoints: [] });
+  };
+}
+
+/** Pixels of the page for each of the picture's. */
+function zoomOf(page: Page): Promise<number> {
+  return page.evaluate(() => window.snell.surface.canvas.getBoundingClientRect().width / window.snell.surface.canvas.width);
+}
