@@ -495,6 +495,9 @@ export class Store {
 
   /** Starts the engine anew, with the last scene that worked. One that fails twice stays closed until it is changed. */
   private recover(message: string | null): Promise<void> {
+    if (this.recovery !== null && message !== null) {
+      this.refused.value = [{ message: `The engine could not be started again: ${message}.`, help: 'The next change tries once more.' }];
+    }
     this.recovery ??= this.startAgain(message).finally(() => (this.recovery = null));
     return this.recovery;
   }

@@ -21,8 +21,9 @@ for (const [what, width, height, deviceScaleFactor] of SCREENS) {
         await finished(page);
         await page.waitForFunction(() => window.snellSpace != null);
         await pin(page, [300, 300]);
-        for (const tab of ['Why?', 'Scene', 'Source']) {
+        for (const [tab, content] of [['Why?', '.ask'], ['Scene', '.properties'], ['Source', '.cm-content']] as const) {
           await page.getByRole('tab', { name: tab }).click();
+          await page.locator(content).waitFor();
           expect(await faults(page), tab).toEqual([]);
         }
         await page.evaluate(() => (location.hash = 'tour/5'));

@@ -15,7 +15,9 @@ const type = async (page: Page, label: string, text: string) => {
 };
 const chooseGlass = async (page: Page) => {
   await inScene(page);
-  await page.getByRole('button', { name: 'glass', exact: true }).click();
+  const chip = page.getByRole('button', { name: 'glass', exact: true });
+  // It may be chosen since the step before.
+  if ((await chip.getAttribute('aria-pressed')) === 'false') await chip.click();
 };
 
 /** What finds the answer of each step. */
@@ -58,13 +60,12 @@ async function asked(page: Page, number: number): Promise<void> {
   await page.getByText(`Step ${number} of 12`).waitFor();
   await page.getByRole('heading', { name: title }).waitFor();
   await page.waitForFunction(
-    ([label, scene, lines]) => {
-      const { base, undoLabel, revision } = window.snell;
-      return base.value?.name === scene && undoLabel.value === label && lines.every((line) => revision.value!.text.includes(line));
+    ([scene, lines]) => {
+      const { base, pristine, revision } = window.snell;
+      return base.value?.name === scene && (lines.length === 0 ? pristine.value : lines.every((line) => revision.value!.text.includes(line)));
     },
-    [`tour: ${title.toLowerCase()}`, scene, edits.map(([key, value]) => `\n${key.split('.').at(-1)} = ${value}\n`)] as const,
+    [scene, edits.map(([key, value]) => `\n${key.split('.').at(-1)} = ${value}\n`)] as const,
   );
-  await finished(page);
   expect(await page.locator('.task').innerText()).toMatch(/^Your turn\. /);
   expect(await page.locator('.answer').count()).toBe(0);
 }

@@ -140,8 +140,10 @@ export async function edit(page: Page, ...edits: Edit[]): Promise<void> {
 
 /** Clicks a pixel, and waits for its rays. */
 export async function pin(page: Page, pixel: Pixel): Promise<void> {
-  const { x, y } = await placeOf(page, pixel);
-  await page.mouse.click(x, y);
+  const picture = page.locator('.picture');
+  await picture.scrollIntoViewIfNeeded();
+  const [{ x, y }, box] = [await placeOf(page, pixel), (await picture.boundingBox())!];
+  await picture.click({ position: { x: x - box.x, y: y - box.y } });
   await page.waitForFunction((pixel) => [window.snell.pinned.value, window.snell.tree.value?.pixel].every((at) => at?.join() === pixel.join()), pixel);
 }
 
