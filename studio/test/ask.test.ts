@@ -25,6 +25,17 @@ test('a clicked pixel says why, and its shares sum to all of it', () =>
     await page.waitForFunction(() => window.snell.tree.value?.pixel[0] === 301);
   }));
 
+test('of a pixel that is let go, nothing stays in the picture', () =>
+  on('#lecture/default', async (page) => {
+    await finished(page);
+    const picture = async () => (await page.locator('.picture').screenshot()).toString('base64');
+    const before = await picture();
+    await pin(page, [300, 300]);
+    expect(await picture()).not.toBe(before);
+    await page.getByRole('button', { name: 'Let go of this pixel' }).click();
+    await expect.poll(picture, { timeout: 10_000 }).toBe(before);
+  }));
+
 test('the player steps through the generations: the tree grows, and the colour becomes that of the pixel', () =>
   on('#gallery/bubbles', async (page) => {
     await begun(page);
