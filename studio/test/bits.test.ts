@@ -2,7 +2,7 @@
 
 import { PNG } from 'pngjs';
 import { expect, test } from 'vitest';
-import { finished, OUT, save, shown, studio } from './page';
+import { begun, edit, finished, openText, OUT, save, shown, studio } from './page';
 import { nativeHash, nativePng, scenesOf, textOf } from './native';
 
 const { on } = studio();
@@ -27,10 +27,10 @@ for (const threads of [1, 2]) {
         expect(page.workers().length).toBe(threads + 1);
         const expected: Record<string, string> = { default: nativeHash('lecture/default') };
         for (const name of [...scenesOf('lecture'), ...GALLERY]) {
-          const text = textOf(name).replace(/^size = \[\d+, \d+\]/m, 'size = [64, 64]');
-          await page.evaluate(([name, text]) => window.snell.open({ name, given: { builtin: name } }, { text }), [name, text] as const);
+          const size: [number, number] = name === 'gallery/brilliant' ? [32, 24] : [64, 64];
+          await openText(page, name, textOf(name, size));
           films[name] = await finished(page);
-          expected[name] = nativeHash(name, '--set', 'render.size=[64,64]');
+          expected[name] = nativeHash(name, '--set', `render.size=[${size.join()}]`);
         }
         expect(films).toEqual(expected);
       },
@@ -66,13 +66,16 @@ test('at 100 % the screen shows the pixels of the file', () =>
 
 test('a picture that was stopped is saved as far as it had come', () =>
   on('#gallery/ice', async (page) => {
-    await page.waitForFunction(() => window.snell?.frame.value > 2 && window.snell.progress.value.pixels > 0);
+    await begun(page);
+    // Few pixels, each of which takes long: of some there is only a coarse picture then.
+    await edit(page, ['render.size', '[160, 180]'], ['render.spp', '400']);
+    await page.waitForFunction(() => window.snell.surface.canvas.width === 160 && window.snell.progress.value.pixels > 0);
     await page.getByRole('button', { name: 'Stop' }).click();
     const file = PNG.sync.read(await save(page, 'Save picture'));
     expect(await page.evaluate(() => window.snell.outcome.value)).toBe(null);
     // All that was under way when it was stopped has come before the file.
     expect(differences(await shown(page), file)).toBe(0);
-    expect(differences(file, new PNG({ width: file.width, height: file.height }))).toBeGreaterThan(file.width * file.height / 2);
+    expect(differences(file, new PNG({ width: file.width, height: file.height }))).toBeGreaterThan((file.width * file.height) / 2);
   }));
 
 /** How many pixels differ. */

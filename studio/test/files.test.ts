@@ -6,7 +6,7 @@ import { tmpdir } from 'node:os';
 import { basename, join } from 'node:path';
 import { expect, test } from 'vitest';
 import { nativeHash, snell } from './native';
-import { DIST, edit, finished, open, openFiles, OUT, studio } from './page';
+import { begun, DIST, edit, finished, open, openFiles, OUT, studio } from './page';
 
 const host = studio();
 const { on } = host;
@@ -45,7 +45,7 @@ test('a scene in another format is opened, changed, and still there after a relo
 
 test('a link holds the whole scene', () =>
   on('#gallery/ball', async (page) => {
-    await finished(page);
+    await begun(page);
     await edit(page, ['render.size', '[60, 40]'], ['material."glass".eta', '1.7']);
     const hash = await finished(page);
     await page.getByRole('button', { name: 'Share' }).click();

@@ -27,9 +27,10 @@ export function nativePng(scene: string): Buffer {
   return readFileSync(`${OUT}native.png`);
 }
 
-/** The text of a built-in scene. */
-export function textOf(scene: string): string {
-  return execFileSync(snell, ['scenes', '--save', scene, '-o', '-'], { encoding: 'utf8', stdio: 'pipe' });
+/** The text of a built-in scene, with a picture of another size. */
+export function textOf(scene: string, [width, height]: [number, number]): string {
+  const text = execFileSync(snell, ['scenes', '--save', scene, '-o', '-'], { encoding: 'utf8', stdio: 'pipe' });
+  return text.replace(/^size = \[\d+, \d+\]/m, `size = [${width}, ${height}]`);
 }
 
 /** The names of the built-in scenes of a group. */

@@ -128,6 +128,11 @@ export async function placeOf(page: Page, [x, y]: Pixel): Promise<{ x: number; y
   );
 }
 
+/** Opens a built-in scene with a text that it has been given since. */
+export async function openText(page: Page, name: string, text: string): Promise<void> {
+  await page.evaluate(([name, text]) => window.snell.open({ name, given: { builtin: name } }, { text }), [name, text] as const);
+}
+
 /** Changes values of the scene, and waits until the scene is the changed one. */
 export async function edit(page: Page, ...edits: Edit[]): Promise<void> {
   const before = await page.evaluateHandle((edits) => {
@@ -151,7 +156,7 @@ export async function pin(page: Page, pixel: Pixel): Promise<void> {
 export async function drag(page: Page, from: { x: number; y: number }, [across, down]: [number, number]): Promise<void> {
   await page.mouse.move(from.x, from.y);
   await page.mouse.down();
-  for (let step = 1; step <= 8; step++) await page.mouse.move(from.x + (across * step) / 8, from.y + (down * step) / 8);
+  for (let step = 1; step <= 6; step++) await page.mouse.move(from.x + (across * step) / 6, from.y + (down * step) / 6);
   await page.mouse.up();
 }
 

@@ -20,7 +20,7 @@ type Gesture =
   | { kind: 'wait' }
   | { kind: 'pan' }
   | { kind: 'drag'; x: number; y: number; move(dx: number, dy: number): void }
-  | { kind: 'pinch'; distance: number };
+  | { kind: 'pinch'; distance: number; middle: [number, number] };
 
 export function PictureView({ store }: { store: Store }) {
   const box = useRef<HTMLDivElement>(null);
@@ -100,7 +100,7 @@ export function PictureView({ store }: { store: Store }) {
     box.current!.setPointerCapture(event.pointerId);
     pointers.current.set(event.pointerId, at(event));
     if (pointers.current.size === 2) {
-      gesture.current = { kind: 'pinch', distance: spread(pointers.current) };
+      gesture.current = { kind: 'pinch', distance: spread(pointers.current), middle: middle(pointers.current) };
       return;
     }
     const pixel = pixelOf(event);
@@ -134,10 +134,13 @@ export function PictureView({ store }: { store: Store }) {
         if (free.current) zoom.value = panBy(zoom.value, here.x - before.x, here.y - before.y, size(), room());
         break;
       case 'pinch': {
-        const distance = spread(pointers.current);
+        const { distance: before, middle: from } = gesture.current;
+        const [distance, to] = [spread(pointers.current), middle(pointers.current)];
         free.current = true;
-        zoom.value = zoomAbout(zoom.value, distance / gesture.current.distance, middle(pointers.current), size(), room());
-        gesture.current.distance = distance;
+        // What was between the fingers stays there.
+        const larger = zoomAbout(zoom.value, distance / before, from, size(), room());
+        zoom.value = panBy(larger, to[0] - from[0], to[1] - from[1], size(), room());
+        Object.assign(gesture.current, { distance, middle: to });
       }
     }
   };
