@@ -9,9 +9,11 @@ import { begun, finished, openText, OUT, pin, placeOf, save, studio } from './pa
 const host = studio();
 const { on } = host;
 
-test('a clicked pixel says why, and its shares sum to all of it', () =>
+test('a clicked pixel says why, its shares sum to all of it, and nothing stays in the picture once it is let go', () =>
   on('#lecture/default', async (page) => {
     await finished(page);
+    const picture = async () => (await page.locator('.picture').screenshot()).toString('base64');
+    const before = await picture();
     await pin(page, [300, 300]);
     await page.getByText('seen through').first().waitFor();
     const shares = await page.evaluate(() => {
@@ -24,14 +26,6 @@ test('a clicked pixel says why, and its shares sum to all of it', () =>
     await page.screenshot({ path: `${OUT}pixel.png` });
     await page.keyboard.press('ArrowRight');
     await page.waitForFunction(() => window.snell.tree.value?.pixel[0] === 301);
-  }));
-
-test('of a pixel that is let go, nothing stays in the picture', () =>
-  on('#lecture/default', async (page) => {
-    await finished(page);
-    const picture = async () => (await page.locator('.picture').screenshot()).toString('base64');
-    const before = await picture();
-    await pin(page, [300, 300]);
     expect(await picture()).not.toBe(before);
     await page.getByRole('button', { name: 'Let go of this pixel' }).click();
     await expect.poll(picture, { timeout: 10_000 }).toBe(before);

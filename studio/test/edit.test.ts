@@ -115,12 +115,23 @@ test('what is typed last counts, whatever is done right after it', () =>
     expect(await text(page)).toMatch(/^# mine\n/);
   }));
 
-test('a pinned pixel does not keep things from being dragged', () =>
+test('a drag counts though a pixel is pinned, and though it is over before it is known what is dragged', () =>
   on('#lecture/default', async (page) => {
     await finished(page);
     await pin(page, [10, 10]);
+    await page.evaluate(() => {
+      const { snell } = window;
+      const seenAt = snell.seenAt.bind(snell);
+      snell.seenAt = async (pixel) => {
+        await new Promise((done) => addEventListener('pointerup', done, { once: true }));
+        return seenAt(pixel);
+      };
+    });
     await drag(page, await placeOf(page, [256, 256]), [40, 0]);
     await page.waitForFunction(() => window.snell.revision.value!.scene.sphere![0]!.center[0] > 51);
+    await page.getByRole('button', { name: 'Undo' }).click();
+    await page.waitForFunction(() => window.snell.revision.value!.scene.sphere![0]!.center[0] === 50);
+    expect(await page.evaluate(() => window.snell.undoLabel.value)).toBe(null);
   }));
 
 test('things are added and removed, each in one step', () =>

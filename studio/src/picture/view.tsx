@@ -17,7 +17,7 @@ const KEYS: Record<string, Pixel> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], Ar
 type Gesture =
   | { kind: 'press'; x: number; y: number; pixel: Pixel | null; seen: Promise<string | null> }
   /** What is seen where the pointer came down is not known yet. */
-  | { kind: 'wait' }
+  | { kind: 'wait'; to: { x: number; y: number }; released: boolean }
   | { kind: 'pan' }
   | { kind: 'drag'; x: number; y: number; move(dx: number, dy: number): void }
   | { kind: 'pinch'; distance: number; middle: [number, number] };
@@ -116,15 +116,19 @@ export function PictureView({ store }: { store: Store }) {
     pointers.current.set(event.pointerId, here);
     const state = gesture.current;
     if (state?.kind === 'press' && Math.hypot(here.x - state.x, here.y - state.y) > CLICK) {
-      const waits: Gesture = { kind: 'wait' };
+      const waits = { kind: 'wait' as const, to: here, released: false };
       gesture.current = waits;
       void state.seen.then((name) => {
-        if (gesture.current !== waits) return;
+        if (gesture.current !== waits && !waits.released) return;
         const moves = grip(name);
-        gesture.current = moves ? { kind: 'drag', x: state.x, y: state.y, move: moves } : { kind: 'pan' };
+        if (!waits.released) gesture.current = moves ? { kind: 'drag', x: state.x, y: state.y, move: moves } : { kind: 'pan' };
+        moves?.((waits.to.x - state.x) / zoom.value.scale, (waits.to.y - state.y) / zoom.value.scale);
       });
     }
     switch (gesture.current?.kind) {
+      case 'wait':
+        gesture.current.to = here;
+        break;
       case 'drag': {
         const { x, y, move } = gesture.current;
         move((here.x - x) / zoom.value.scale, (here.y - y) / zoom.value.scale);
@@ -149,6 +153,8 @@ export function PictureView({ store }: { store: Store }) {
     pointers.current.delete(event.pointerId);
     const state = gesture.current;
     gesture.current = null;
+    // A hand may be faster than the answer.
+    if (state?.kind === 'wait') state.released = event.type === 'pointerup';
     if (state?.kind !== 'press' || event.type === 'pointercancel') return;
     box.current!.focus();
     store.pin(state.pixel);
