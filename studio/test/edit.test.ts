@@ -180,22 +180,26 @@ test('an empty scene and a huge picture leave a page that goes on', () =>
   }));
 
 test('a search that takes long is cancelled, and the changes that waited for it come', () =>
-  on('#gallery/ice', async (page) => {
+  on('#lecture/default', async (page) => {
     await begun(page);
     // Every pixel of it, many times: far longer than this test.
-    await edit(page, ['render.size', '[160, 180]'], ['render.spp', '400']);
-    await page.getByRole('button', { name: 'lemon', exact: true }).click();
-    await page.getByText('Looking for lemon').waitFor();
+    await edit(page, ['render.spp', '1000']);
+    await page.getByRole('button', { name: 'green', exact: true }).click();
+    await page.getByText('Looking for green').waitFor();
     await page.evaluate(() => {
-      window.snell.edit([['camera.fov', '30']], { label: 'first' });
-      window.snell.edit([['render.spp', '1'], ['render.size', '[48, 54]']], { label: 'second' });
+      window.snell.edit([['material.glass.eta', '1.4']], { label: 'first' });
+      window.snell.edit([['render.spp', '1'], ['render.size', '[48, 48]']], { label: 'second' });
     });
     await page.getByRole('button', { name: 'Cancel' }).click();
     await page.waitForFunction(() => window.snell.undoLabel.value === 'second');
-    expect(await page.evaluate(() => [window.snell.revision.value!.scene.camera.fov, window.snell.revision.value!.size])).toEqual([30, [48, 54]]);
+    const { eta, size } = await page.evaluate(() => {
+      const { scene, size } = window.snell.revision.value!;
+      return { eta: scene.material!.glass!.eta, size };
+    });
+    expect([eta, size]).toEqual([1.4, [48, 48]]);
     expect(await finished(page)).toMatch(/^[0-9a-f]{64}$/);
-    await page.getByRole('button', { name: 'lemon', exact: true }).click();
-    await page.waitForFunction(() => window.snell.sighting.value?.object === 'lemon');
+    await page.getByRole('button', { name: 'green', exact: true }).click();
+    await page.waitForFunction(() => window.snell.sighting.value?.object === 'green');
   }));
 
 /** Where a point of the scene is on the page, as the drawing shows it. */
