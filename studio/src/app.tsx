@@ -57,6 +57,7 @@ export function App() {
     };
   }, []);
 
+  // For the same, the drawing.
   useEffect(() => void Object.assign(window, { snellSpace: space }), [space]);
 
   const step = stepOf(fragment.value);
