@@ -55,6 +55,9 @@ export function App({ store, work }: { store: Store; work: WorkKeeper }) {
     };
   }, []);
 
+  // For the same, the drawing.
+  useEffect(() => void Object.assign(window, { snellSpace: space }), [space]);
+
   const step = stepOf(fragment.value);
   const exercise = exerciseOf(fragment.value);
   const go = (to: string) => {

@@ -130,6 +130,10 @@ export class Store {
   private calm: ReturnType<typeof setTimeout> | undefined;
   private covered: (() => void) | null = null;
   private begun = 0;
+  /** Searches in every pixel, for which changes wait. */
+  private searches = 0;
+  /** Are those changes still wanted, though what they wait for is cancelled? */
+  private spares = false;
   /** Files that are being made. */
   private saving = 0;
   private openedText = '';
@@ -300,15 +304,10 @@ export class Store {
   async find(object: string | null): Promise<void> {
     this.sighting.value = null;
     if (object === null) return;
-    this.busy.value = `Looking for ${object} in every pixel …`;
-    try {
+    await this.search(`Looking for ${object} in every pixel …`, async () => {
       const found = await this.engine.ask({ ask: 'find', object });
       this.sighting.value = { ...found, object, path: null, all: found.mask };
-    } catch (error) {
-      this.tell(error);
-    } finally {
-      this.busy.value = null;
-    }
+    });
   }
 
   /** Shows the pixels of one of the paths that were found, or those of all. */
@@ -320,13 +319,21 @@ export class Store {
       this.sighting.value = { ...found, mask: all, path };
       return;
     }
-    this.busy.value = 'Looking along this path in every pixel …';
-    try {
+    await this.search('Looking along this path in every pixel …', async () => {
       const mask = await this.engine.ask({ ask: 'path', path });
       if (this.sighting.value === found) this.sighting.value = { ...found, mask, path };
+    });
+  }
+
+  private async search(words: string, act: () => Promise<void>): Promise<void> {
+    this.busy.value = words;
+    this.searches++;
+    try {
+      await act();
     } catch (error) {
       this.tell(error);
     } finally {
+      this.searches--;
       this.busy.value = null;
     }
   }
@@ -365,7 +372,9 @@ export class Store {
 
   /** Ends whatever takes long: the engine is started anew with the scene as it was. */
   async cancel(): Promise<void> {
+    this.spares = this.searches > 0;
     await this.recover(null);
+    this.spares = false;
   }
 
   private enqueue(step: Omit<Step, 'done' | 'failed'>): Promise<void> {
@@ -385,6 +394,10 @@ export class Store {
         step.done();
         await this.firstPass();
       } catch (error) {
+        if (error instanceof Cancelled && this.spares) {
+          this.steps.unshift(step);
+          continue;
+        }
         step.failed(error as Error);
         this.tell(error);
       } finally {
@@ -497,6 +510,9 @@ export class Store {
 
   /** Starts the engine anew, with the last scene that worked. One that fails twice stays closed until it is changed. */
   private recover(message: string | null): Promise<void> {
+    if (this.recovery !== null && message !== null) {
+      this.refused.value = [{ message: `The engine could not be started again: ${message}.`, help: 'The next change tries once more.' }];
+    }
     this.recovery ??= this.startAgain(message).finally(() => (this.recovery = null));
     return this.recovery;
   }

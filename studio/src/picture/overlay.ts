@@ -40,7 +40,9 @@ export class Overlay {
     if (this.canvas.width !== wide || this.canvas.height !== high) Object.assign(this.canvas, { width: wide, height: high });
     const paint = this.canvas.getContext('2d')!;
     paint.setTransform(ratio, 0, 0, ratio, 0, 0);
-    paint.clearRect(0, 0, width, height);
+    // In halves: Chromium goes on showing what was there before if a canvas is cleared as a whole and nothing is drawn on it.
+    paint.clearRect(0, 0, width, height / 2);
+    paint.clearRect(0, height / 2, width, height / 2);
     this.drawMask(paint, zoom);
     if (zoom.scale >= LEGIBLE) this.drawValues(paint, zoom, width, height);
     const { pinned, hovered } = this.store;

@@ -1,14 +1,14 @@
 /** The picture: point at it to ask, click to pin, drag things, zoom to the pixels. */
 
 import { useEffect, useRef } from 'preact/hooks';
-import { untracked, useSignal, useSignalEffect } from '@preact/signals';
+import { untracked, useComputed, useSignal, useSignalEffect } from '@preact/signals';
 import { placeOf, roundTo, type Vec3 } from '../scene/objects';
 import { editsFor } from '../scene/movement';
 import type { Pixel, Store } from '../store';
 import { ComparisonSlider } from './comparison';
 import { dragged } from './drag';
 import { Overlay } from './overlay';
-import { fit, lay, panBy, pixelAt, type Zoom, zoomAbout } from './zoom';
+import { aligned, fit, lay, panBy, pixelAt, type Zoom, zoomAbout } from './zoom';
 
 /** Pixels of the screen that a pointer may move between down and up in a click. */
 const CLICK = 4;
@@ -17,10 +17,10 @@ const KEYS: Record<string, Pixel> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], Ar
 type Gesture =
   | { kind: 'press'; x: number; y: number; pixel: Pixel | null; seen: Promise<string | null> }
   /** What is seen where the pointer came down is not known yet. */
-  | { kind: 'wait' }
+  | { kind: 'wait'; to: { x: number; y: number }; released: boolean }
   | { kind: 'pan' }
   | { kind: 'drag'; x: number; y: number; move(dx: number, dy: number): void }
-  | { kind: 'pinch'; distance: number };
+  | { kind: 'pinch'; distance: number; middle: [number, number] };
 
 export function PictureView({ store }: { store: Store }) {
   const box = useRef<HTMLDivElement>(null);
@@ -39,14 +39,15 @@ export function PictureView({ store }: { store: Store }) {
     // Each change is drawn, and of most edits there is none.
     if (to.scale !== scale || to.x !== x || to.y !== y) zoom.value = to;
   };
+  /** As it is on this screen. */
+  const placed = useComputed(() => aligned(zoom.value, devicePixelRatio));
 
   useEffect(() => {
     const { canvas } = store.surface;
     box.current!.prepend(canvas);
     overlay.current = new Overlay(box.current!, store);
     const resizes = new ResizeObserver(() => {
-      if (!free.current) fitted();
-      overlay.current!.draw(zoom.value);
+      zoom.value = free.current ? { ...zoom.value } : fit(size(), room());
     });
     resizes.observe(box.current!);
     const wheel = (event: WheelEvent) => {
@@ -67,9 +68,9 @@ export function PictureView({ store }: { store: Store }) {
     if (store.revision.value && !free.current) untracked(fitted);
   });
   useSignalEffect(() => {
-    lay(store.surface.canvas, zoom.value);
+    lay(store.surface.canvas, placed.value);
     void [store.hovered.value, store.pinned.value, store.tree.value, store.sighting.value, store.branch.value, store.outcome.value];
-    overlay.current?.draw(zoom.value);
+    overlay.current?.draw(placed.value);
   });
 
   const at = (event: MouseEvent) => {
@@ -78,7 +79,7 @@ export function PictureView({ store }: { store: Store }) {
   };
   const pixelOf = (event: MouseEvent): Pixel | null => {
     const { x, y } = at(event);
-    return pixelAt(zoom.value, x, y, size());
+    return pixelAt(placed.value, x, y, size());
   };
 
   /** What a drag moves that begins where this is seen first. */
@@ -99,7 +100,7 @@ export function PictureView({ store }: { store: Store }) {
     box.current!.setPointerCapture(event.pointerId);
     pointers.current.set(event.pointerId, at(event));
     if (pointers.current.size === 2) {
-      gesture.current = { kind: 'pinch', distance: spread(pointers.current) };
+      gesture.current = { kind: 'pinch', distance: spread(pointers.current), middle: middle(pointers.current) };
       return;
     }
     const pixel = pixelOf(event);
@@ -115,15 +116,19 @@ export function PictureView({ store }: { store: Store }) {
     pointers.current.set(event.pointerId, here);
     const state = gesture.current;
     if (state?.kind === 'press' && Math.hypot(here.x - state.x, here.y - state.y) > CLICK) {
-      const waits: Gesture = { kind: 'wait' };
+      const waits = { kind: 'wait' as const, to: here, released: false };
       gesture.current = waits;
       void state.seen.then((name) => {
-        if (gesture.current !== waits) return;
+        if (gesture.current !== waits && !waits.released) return;
         const moves = grip(name);
-        gesture.current = moves ? { kind: 'drag', x: state.x, y: state.y, move: moves } : { kind: 'pan' };
+        if (!waits.released) gesture.current = moves ? { kind: 'drag', x: state.x, y: state.y, move: moves } : { kind: 'pan' };
+        moves?.((waits.to.x - state.x) / zoom.value.scale, (waits.to.y - state.y) / zoom.value.scale);
       });
     }
     switch (gesture.current?.kind) {
+      case 'wait':
+        gesture.current.to = here;
+        break;
       case 'drag': {
         const { x, y, move } = gesture.current;
         move((here.x - x) / zoom.value.scale, (here.y - y) / zoom.value.scale);
@@ -133,10 +138,13 @@ export function PictureView({ store }: { store: Store }) {
         if (free.current) zoom.value = panBy(zoom.value, here.x - before.x, here.y - before.y, size(), room());
         break;
       case 'pinch': {
-        const distance = spread(pointers.current);
+        const { distance: before, middle: from } = gesture.current;
+        const [distance, to] = [spread(pointers.current), middle(pointers.current)];
         free.current = true;
-        zoom.value = zoomAbout(zoom.value, distance / gesture.current.distance, middle(pointers.current), size(), room());
-        gesture.current.distance = distance;
+        // What was between the fingers stays there.
+        const larger = zoomAbout(zoom.value, distance / before, from, size(), room());
+        zoom.value = panBy(larger, to[0] - from[0], to[1] - from[1], size(), room());
+        Object.assign(gesture.current, { distance, middle: to });
       }
     }
   };
@@ -145,6 +153,8 @@ export function PictureView({ store }: { store: Store }) {
     pointers.current.delete(event.pointerId);
     const state = gesture.current;
     gesture.current = null;
+    // A hand may be faster than the answer.
+    if (state?.kind === 'wait') state.released = event.type === 'pointerup';
     if (state?.kind !== 'press' || event.type === 'pointercancel') return;
     box.current!.focus();
     store.pin(state.pixel);
@@ -192,7 +202,7 @@ export function PictureView({ store }: { store: Store }) {
       onPointerLeave={() => pointers.current.size === 0 && store.hover(null)}
       onKeyDown={key}
     >
-      {store.comparison.value && <ComparisonSlider store={store} comparison={store.comparison.value} zoom={zoom} />}
+      {store.comparison.value && <ComparisonSlider store={store} comparison={store.comparison.value} zoom={placed} />}
       <ZoomButtons
         zoom={store.revision.value ? zoom.value.scale : 1}
         fit={() => {

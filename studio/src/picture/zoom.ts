@@ -33,6 +33,11 @@ export function panBy(zoom: Zoom, dx: number, dy: number, picture: Size, box: Si
   return held({ ...zoom, x: zoom.x + dx, y: zoom.y + dy }, picture, box);
 }
 
+/** Begins at a whole pixel of the screen, as its box does: else the first row and column are mixed with what is beside the picture. */
+export function aligned({ scale, x, y }: Zoom, ratio: number): Zoom {
+  return { scale, x: Math.round(x * ratio) / ratio, y: Math.round(y * ratio) / ratio };
+}
+
 /** Lays a canvas where its picture is. */
 export function lay(canvas: HTMLCanvasElement, { scale, x, y }: Zoom): void {
   canvas.style.transform = `translate(${x}px, ${y}px) scale(${scale})`;
