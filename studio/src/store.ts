@@ -104,6 +104,9 @@ export class Store {
   readonly snaps = signal(false);
   readonly sighting = signal<ShownSighting | null>(null);
   readonly comparison = signal<Comparison | null>(null);
+  /** Of the light that pixels have lost: the bin whose pixels are shown, and the one that is pointed at. */
+  readonly chosenBin = signal<number | null>(null);
+  readonly pointedBin = signal<number | null>(null);
   readonly undoLabel = signal<string | null>(null);
   readonly redoLabel = signal<string | null>(null);
 
@@ -114,6 +117,12 @@ export class Store {
 
   readonly surface = new Surface();
   /** Where what is rendered goes. */
+  /** For each pixel how much of it stays to be seen, while something is looked for in the picture. */
+  readonly mask = computed<ArrayLike<number> | null>(() => {
+    const bin = this.pointedBin.value ?? this.chosenBin.value;
+    const lost = this.outcome.value?.lost;
+    return bin !== null && lost ? lost.bins.map((of) => Number(of === bin)) : (this.sighting.value?.mask ?? null);
+  });
   private target = this.surface;
   readonly engine: Engine;
   private readonly history = new History<Base>();
@@ -255,6 +264,7 @@ export class Store {
   /** Lays the picture beside itself with other options, beside itself as it is now, or beside nothing. */
   compare(label: string | null, options: PictureOptions | null = null): void {
     if (label === null) {
+    this.pointedBin.value = null;
       this.comparison.value = null;
       if (this.target !== this.surface) this.render();
       return;
@@ -316,6 +326,7 @@ export class Store {
     if (found === null) return;
     const { all } = found;
     if (path === null) {
+    this.chosenBin.value = null;
       this.sighting.value = { ...found, mask: all, path };
       return;
     }
@@ -356,6 +367,12 @@ export class Store {
 
   /** The numbers of a part of the picture, as far as they are at hand. */
   async values(x: number, y: number, width: number, height: number): Promise<Float64Array | null> {
+  /** Shows the pixels that have lost so much light, or all. */
+  chooseBin(bin: number | null): void {
+    this.sighting.value = null;
+    this.chosenBin.value = bin;
+  }
+
     return this.target === this.surface ? this.engine.ask({ ask: 'values', x, y, width, height }) : null;
   }
 
@@ -472,6 +489,7 @@ export class Store {
   }
 
   private travel(steps: -1 | 1): void {
+      this.chosenBin.value = null;
     this.enqueue({ change: steps, label: '', group: null, base: null }).catch(() => {});
   }
 

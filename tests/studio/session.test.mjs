@@ -143,6 +143,7 @@ async function inShares(name, shares, options) {
             const values = worker.values(x, y, w, h);
             gathered.put(x, y, w, h, values, false);
             gathered.put(x, y, w, h, values, true);
+            gathered.put_lost(x, y, w, h, worker.lost(x, y, w, h));
             pixels += w * h;
         }
         gathered.put_statistics(worker.statistics());
@@ -156,8 +157,9 @@ for (const [name, options] of [
     ["lecture/default", { size: [200, 130] }],
     ["gallery/ball", { size: [150, 100], spp: 13 }],
     ["gallery/lens", { size: [65, 129], spp: 2, depth: 3 }],
+    ["lecture/default", { size: [200, 130], depth: 1 }],
 ]) {
-    test(`${name} in shares has the hash of the command`, async () => {
+    test(`${name} in shares is what the command makes of it, ${JSON.stringify(options)}`, async () => {
         const given = Object.entries(options).flatMap(([key, value]) => [`--${key}`, [value].flat().join("x")]);
         const expected = native(name, ...given);
         const whole = Session.builtin(name);
@@ -170,9 +172,37 @@ for (const [name, options] of [
             assert.deepEqual(gathered.png(), whole.png());
             const rays = Object.values(expected.rays).reduce((sum, count) => sum + count);
             assert.equal(JSON.parse(gathered.progress()).rays, rays);
+            assert.deepEqual(lostLight(gathered), expected.lost);
         }
     });
 }
+
+// What the pixels have lost, added up as `snell render` tells it.
+function lostLight(session) {
+    const [width, height] = session.size;
+    const units = session.lost(0, 0, width, height);
+    const worst = units.reduce((worst, lost, at) => (lost > units[worst] ? at : worst), 0);
+    return {
+        rays: JSON.parse(session.statistics()).lost.rays,
+        share: units.reduce((sum, lost) => sum + lost, 0) / 2 ** 32 / (width * height * session.spp),
+        worst: units[worst] / 2 ** 32 / session.spp,
+        worst_pixel: [worst % width, Math.floor(worst / width)],
+    };
+}
+
+test("what a whole picture has lost is known if it comes coarse to fine", () => {
+    const session = Session.builtin("gallery/ball");
+    findings(() => session.lost(0, 0, 1, 1));
+    for (const spp of [1, 3]) {
+        const options = { size: [50, 40], depth: 2, spp };
+        session.begin(JSON.stringify(options));
+        findings(() => finish(session).lost(0, 0, 1, 1));
+        session.begin(JSON.stringify({ ...options, coarsest: 8 }));
+        assert.equal(lostLight(session).share, 0);
+        finish(session);
+        assert.deepEqual(lostLight(session), native("gallery/ball", "--size", "50x40", "--depth", "2", "--spp", `${spp}`).lost);
+    }
+});
 
 test("what was gathered is taken as it is given", () => {
     const session = Session.builtin("gallery/ball");
@@ -182,11 +212,17 @@ test("what was gathered is taken as it is given", () => {
     findings(() => session.put(0, 0, 50, 41, new Float64Array(50 * 41 * 3), true));
     findings(() => session.put(0, 0, 2, 2, new Float64Array(11), true));
     findings(() => session.put(4294967295, 0, 2, 2, new Float64Array(12), true));
+    findings(() => session.put(0, 0, 4294967295, 4294967295, new Float64Array(3), true));
+    findings(() => session.put_lost(0, 0, 2, 2, new Float64Array(3)));
+    findings(() => session.put_lost(49, 0, 2, 2, new Float64Array(4)));
+    session.put_lost(1, 2, 2, 1, new Float64Array([3, 4]));
+    assert.deepEqual([...session.lost(0, 2, 4, 1)], [0, 3, 4, 0]);
     for (const statistics of ["", "[]", "{}", '{"rays": 1}']) {
         findings(() => session.put_statistics(statistics));
     }
     session.begin('{ "size": [50, 40] }');
     findings(() => session.put(0, 0, 1, 1, new Float64Array(3), true));
+    findings(() => session.put_lost(0, 0, 1, 1, new Float64Array(1)));
     findings(() => session.put_statistics(session.statistics()));
 });
 

@@ -12,7 +12,7 @@
 //! The scene is its text: every edit changes that, and the text is read again, so that the two cannot disagree.
 //!
 //! An instance of the module has one thread. A pool of workers has an instance each: they render a share of the picture
-//! (`share`), and one of them may gather what they have made (`gather`, `put`).
+//! (`share`), and one of them may gather what they have made (`gather`, `put`, `put_lost`, `put_statistics`).
 //!
 //! ```js
 //! import init, { Session } from "./snell_wasm.js";
@@ -31,7 +31,9 @@
 compile_error!("this is to be built with simd128: is RUSTFLAGS set, or .cargo/config.toml not read?");
 
 mod findings;
+mod gathered;
 mod page;
+mod part;
 mod picture;
 mod pieces;
 mod ready;

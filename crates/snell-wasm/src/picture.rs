@@ -1,5 +1,6 @@
 //! A picture that comes tile by tile, rendered here or gathered from others.
 
+use crate::gathered::Gathered;
 use crate::page::now;
 use crate::pieces::{Pieces, cut};
 use serde::Deserialize;
@@ -62,12 +63,12 @@ impl Asked {
 pub enum Picture {
     /// It is rendered here, all of it or a share.
     Rendered(Pieces),
-    /// Others render it, and tell what they have traced for it.
-    Gathered(Film, Box<Statistics>),
+    /// Others render it.
+    Gathered(Box<Gathered>),
 }
 
 /// Sums of samples, and the light that was lost: at most so many bytes for each pixel, while passes refine it.
-const BYTES_OF_PASSES: u64 = 2 * (size_of::<Rgb>() as u64 + 8) + 2 * size_of::<Rgb>() as u64;
+const BYTES_OF_PASSES: u64 = 4 * size_of::<Rgb>() as u64 + size_of::<u64>() as u64;
 
 impl Picture {
     /// Begins a picture.
@@ -91,16 +92,16 @@ impl Picture {
     pub fn gather(compiled: &CompiledScene, asked: &Asked) -> Result<Self, Report> {
         let options = Options { crop: asked.crop, ..Options::default() };
         let crop = options.crop_of(compiled.world()).map_err(refused)?;
-        enough_memory(crop, 1, BYTES_PER_PIXEL)?;
-        let film = Film::new(compiled.world().camera.size, crop).map_err(|error| refused(error.into()))?;
-        Ok(Self::Gathered(film, Box::default()))
+        enough_memory(crop, 1, Gathered::BYTES_PER_PIXEL)?;
+        let gathered = Gathered::new(compiled.world().camera.size, crop).map_err(|error| refused(error.into()))?;
+        Ok(Self::Gathered(Box::new(gathered)))
     }
 
     /// The picture, if it is not only a share.
     pub fn film(&self) -> Option<&Film> {
         match self {
             Self::Rendered(pieces) => pieces.whole(),
-            Self::Gathered(film, _) => Some(film),
+            Self::Gathered(gathered) => Some(&gathered.film),
         }
     }
 
@@ -108,26 +109,30 @@ impl Picture {
     pub fn part(&self, part: Crop) -> Option<Film> {
         match self {
             Self::Rendered(pieces) => pieces.part(part),
-            Self::Gathered(film, _) => film.part(part),
+            Self::Gathered(gathered) => gathered.film.part(part),
+        }
+    }
+
+    /// The light that the pixels of such a part have lost so far, in units of 2⁻³². Where tiles come whole, nobody knows.
+    pub fn lost(&self, part: Crop) -> Option<Vec<f64>> {
+        match self {
+            Self::Rendered(pieces) => pieces.lost(part),
+            Self::Gathered(gathered) => gathered.lost(part),
         }
     }
 
     pub fn is_finished(&self) -> bool {
         match self {
             Self::Rendered(pieces) => pieces.is_finished(),
-            Self::Gathered(film, _) => film.is_finished(),
+            Self::Gathered(gathered) => gathered.film.is_finished(),
         }
     }
 
-    /// How far it is. Of what others have rendered only finished pixels count.
+    /// How far it is.
     pub fn progress(&self) -> Progress {
         match self {
             Self::Rendered(pieces) => pieces.progress(),
-            Self::Gathered(film, statistics) => Progress {
-                pixels: film.finished.iter().filter(|finished| **finished).count() as u64,
-                total_pixels: film.finished.len() as u64,
-                rays: statistics.rays.total(),
-            },
+            Self::Gathered(gathered) => gathered.progress(),
         }
     }
 
@@ -135,7 +140,7 @@ impl Picture {
     pub fn statistics(&self) -> Statistics {
         match self {
             Self::Rendered(pieces) => pieces.statistics(),
-            Self::Gathered(_, statistics) => Statistics::clone(statistics),
+            Self::Gathered(gathered) => gathered.statistics.clone(),
         }
     }
 
@@ -157,46 +162,13 @@ impl Picture {
         changed
     }
 
-    /// Takes what another instance has traced for a gathered picture.
-    pub fn put_statistics(&mut self, text: &str) -> Result<(), Report> {
-        let Self::Gathered(_, all) = self else { return Err(rendered_here()) };
-        let statistics: Statistics =
-            serde_json::from_str(text).map_err(|e| Report::error(format!("these are no statistics: {e}")))?;
-        all.merge(&statistics);
-        Ok(())
-    }
-
-    /// Takes what another instance has rendered of a gathered picture, with all of its samples or as far as it has come.
-    pub fn put(&mut self, part: Crop, values: &[f64], finished: bool) -> Result<(), Report> {
-        let Self::Gathered(film, _) = self else { return Err(rendered_here()) };
-        let whole = film.crop;
-        if values.len() as u64 != 3 * u64::from(part.width) * u64::from(part.height) || !is_within(part, whole) {
-            let Crop { x, y, width, height } = part;
-            let message =
-                format!("{} numbers for {width} x {height} pixels at {x},{y} are no part of the picture", values.len());
-            return Err(Report::error(message));
+    /// The picture that takes what others have rendered.
+    pub fn gathered(&mut self) -> Result<&mut Gathered, Report> {
+        match self {
+            Self::Rendered(_) => Err(Report::error("this picture is rendered here, and takes nothing from elsewhere")),
+            Self::Gathered(gathered) => Ok(gathered),
         }
-        let mut colors = values.chunks_exact(3).map(|color| Rgb::new(color[0], color[1], color[2]));
-        for row in part.y - whole.y..part.y - whole.y + part.height {
-            let start = row as usize * film.width() + (part.x - whole.x) as usize;
-            let range = start..start + part.width as usize;
-            film.finished[range.clone()].fill(finished);
-            film.pixels[range].iter_mut().zip(&mut colors).for_each(|(pixel, color)| *pixel = color);
-        }
-        Ok(())
     }
-}
-
-fn rendered_here() -> Report {
-    Report::error("this picture is rendered here, and takes nothing from elsewhere")
-}
-
-/// Does a rectangle, which is not empty, lie within another?
-fn is_within(part: Crop, whole: Crop) -> bool {
-    let along = |start: u32, length: u32, first: u32, have: u32| {
-        length > 0 && start >= first && start.checked_add(length).is_some_and(|end| end <= first + have)
-    };
-    along(part.x, part.width, whole.x, whole.width) && along(part.y, part.height, whole.y, whole.height)
 }
 
 fn refused(error: RenderError) -> Report {

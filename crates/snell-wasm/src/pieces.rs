@@ -1,5 +1,6 @@
 //! The part of a picture that one of many instances renders: pieces that get finer together.
 
+use crate::part::rows;
 use snell::film::{Crop, Film};
 use snell::render::{Fineness, Options, Progress, RenderError, Renderer};
 use snell::trace::{Statistics, Tile};
@@ -74,6 +75,13 @@ impl Pieces {
     /// What lies within a piece.
     pub fn part(&self, part: Crop) -> Option<Film> {
         self.renderers.iter().find_map(|piece| piece.film().part(part))
+    }
+
+    /// The light that the pixels of what lies within a piece have lost so far, in units of 2⁻³².
+    pub fn lost(&self, part: Crop) -> Option<Vec<f64>> {
+        let (piece, rows) = self.renderers.iter().find_map(|piece| Some((piece, rows(part, piece.film().crop)?)))?;
+        let lost = piece.lost()?;
+        Some(rows.flat_map(|row| lost[row].iter().map(|&units| units as f64)).collect())
     }
 
     pub fn progress(&self) -> Progress {

@@ -1,6 +1,7 @@
 //! What JavaScript holds: a scene, and its picture as far as it has come.
 
 use crate::findings::{json, thrown};
+use crate::gathered::Gathered;
 use crate::picture::{Asked, Changed, Picture};
 use crate::ready::{Given, Ready};
 use js_sys::{Array, Float64Array, Object, Reflect, Uint8Array, Uint32Array, try_iter};
@@ -138,8 +139,8 @@ impl Session {
         self.begin_with(options, Picture::begin)
     }
 
-    /// Begins a picture that other instances render: it is put together from their `values`. The options are those of
-    /// `begin`.
+    /// Begins a picture that other instances render: it is put together from their `values` and `lost`. The options are
+    /// those of `begin`.
     pub fn gather(&mut self, options: Option<String>) -> Answer<()> {
         self.begin_with(options, Picture::gather)
     }
@@ -153,8 +154,12 @@ impl Session {
 
     /// Puts a part, which another instance has rendered, into a gathered picture. `finished`: with all of its samples.
     pub fn put(&mut self, x: u32, y: u32, width: u32, height: u32, values: &[f64], finished: bool) -> Answer<()> {
-        let picture = self.picture.as_mut().ok_or_else(|| thrown(&[nothing_begun()]))?;
-        or_throw(picture.put(Crop { x, y, width, height }, values, finished))
+        or_throw(self.gathered()?.put(Crop { x, y, width, height }, values, finished))
+    }
+
+    /// Puts what the pixels of a part have `lost` in another instance into a gathered picture.
+    pub fn put_lost(&mut self, x: u32, y: u32, width: u32, height: u32, lost: &[f64]) -> Answer<()> {
+        or_throw(self.gathered()?.put_lost(Crop { x, y, width, height }, lost))
     }
 
     /// What was traced for the picture so far, in JSON, for `put_statistics` of the instance that gathers it.
@@ -165,14 +170,19 @@ impl Session {
 
     /// Adds what another instance has traced for a gathered picture, once it is finished there: `validate` knows of it then.
     pub fn put_statistics(&mut self, statistics: &str) -> Answer<()> {
-        let picture = self.picture.as_mut().ok_or_else(|| thrown(&[nothing_begun()]))?;
-        or_throw(picture.put_statistics(statistics))
+        or_throw(self.gathered()?.put_statistics(statistics))
     }
 
     /// Width and height of the whole picture.
     #[wasm_bindgen(getter)]
     pub fn size(&self) -> Vec<u32> {
         self.ready.compiled.world().camera.size.to_vec()
+    }
+
+    /// Samples of each pixel.
+    #[wasm_bindgen(getter)]
+    pub fn spp(&self) -> u32 {
+        self.ready.compiled.settings().spp
     }
 
     /// Is everything rendered?
@@ -209,6 +219,14 @@ impl Session {
     /// The numbers of a part of the picture: linear red, green and blue of each pixel.
     pub fn values(&self, x: u32, y: u32, width: u32, height: u32) -> Answer<Vec<f64>> {
         Ok(self.part(Crop { x, y, width, height })?.numbers().to_vec())
+    }
+
+    /// The light that each pixel of a part has lost over all of its samples so far: the throughput of the rays that were not followed,
+    /// in units of 2⁻³², as the statistics have it. It is known of a picture with `coarsest`, and of one that was gathered.
+    pub fn lost(&self, x: u32, y: u32, width: u32, height: u32) -> Answer<Vec<f64>> {
+        let part = Crop { x, y, width, height };
+        let picture = self.picture.as_ref().ok_or_else(|| thrown(&[nothing_begun()]))?;
+        picture.lost(part).ok_or_else(|| thrown(&[no_part(part).help("begin the picture with `coarsest`")]))
     }
 
     /// Why a pixel of the whole picture has its colour: its ray tree in JSON, as `snell explain --json` has it.
@@ -346,10 +364,12 @@ impl Session {
 
     fn part(&self, part: Crop) -> Answer<Film> {
         let picture = self.picture.as_ref().ok_or_else(|| thrown(&[nothing_begun()]))?;
-        picture.part(part).ok_or_else(|| {
-            let Crop { x, y, width, height } = part;
-            thrown(&[Report::error(format!("{width} x {height} pixels at {x},{y} are no part of the picture"))])
-        })
+        picture.part(part).ok_or_else(|| thrown(&[no_part(part)]))
+    }
+
+    fn gathered(&mut self) -> Answer<&mut Gathered> {
+        let picture = self.picture.as_mut().ok_or_else(|| thrown(&[nothing_begun()]))?;
+        or_throw(picture.gathered())
     }
 
     fn file(&self, format: Format) -> Answer<Vec<u8>> {
@@ -393,6 +413,10 @@ fn fingerprint(ViewGeometry { vertices, faces }: &ViewGeometry) -> String {
 
 fn nothing_begun() -> Report {
     Report::error("there is no picture yet").help("begin one")
+}
+
+fn no_part(Crop { x, y, width, height }: Crop) -> Report {
+    Report::error(format!("{width} x {height} pixels at {x},{y} are no part of the picture"))
 }
 
 /// Where an object is seen.

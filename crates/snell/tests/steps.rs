@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use snell::film::{Crop, Film, Rgb};
-use snell::render::{Options, Passes, Progress, Renderer, Settings, render};
+use snell::render::{Options, Passes, Progress, Renderer, Settings, render, trace_pixel};
 use snell::scene::{Integrator, Scene};
 use snell::trace::Statistics;
 use snell::world::World;
@@ -118,6 +118,36 @@ fn what_was_cancelled_goes_on_to_the_same_picture_and_statistics() {
 }
 
 #[test]
+fn what_pixels_have_lost_adds_up_to_what_the_picture_has_lost() {
+    const UNIT: f64 = (1u64 << 32) as f64;
+    for spp in [1, 3] {
+        let scene = glass(spp);
+        let (world, settings) = (Arc::new(World::new(&scene).unwrap()), Settings::from(&scene));
+        let begin = |passes| {
+            Renderer::new(Arc::clone(&world), settings.clone(), &Options { passes, ..Options::default() }).unwrap()
+        };
+        assert!(begin(Passes::WholeTiles).lost().is_none());
+        let mut renderer = begin(Passes::CoarseToFine { coarsest: 4 });
+        assert!(renderer.lost().unwrap().iter().all(|&units| units == 0));
+        renderer.step(u64::MAX);
+        let (lost, Statistics { lost: all, rays, .. }) = (renderer.lost().unwrap(), renderer.statistics());
+        assert!(all.rays > 0);
+        assert_eq!(lost.iter().sum::<u64>() as f64 / UNIT / rays.camera as f64, all.share(rays.camera));
+        assert_eq!(*lost.iter().max().unwrap() as f64 / UNIT / f64::from(spp), all.worst(spp));
+        for (at, &units) in lost.iter().enumerate() {
+            let trace = trace_pixel(&world, &settings, at as u32 % 13, at as u32 / 13).unwrap();
+            let ended = trace.samples.iter().flat_map(|tree| &tree.nodes).filter(|node| node.cutoff.is_some());
+            // Bands of light have channels below 0.
+            let expected: f64 =
+                ended.clone().map(|ray| Rgb::from(ray.throughput.to_array().map(f64::abs)).mean()).sum();
+            // Each ray is rounded down to a whole unit; a sum in another order differs by less.
+            let rays = ended.count() as f64;
+            assert!((expected - units as f64 / UNIT).abs() <= 2.0 * rays / UNIT, "pixel {at}, {spp} samples");
+        }
+    }
+}
+
+#[test]
 fn a_world_is_rendered_with_the_models_of_light_it_was_compiled_for() {
     let scene = lecture("lecture/default", 8);
     let world = World::new(&scene).unwrap();
@@ -125,5 +155,5 @@ fn a_world_is_rendered_with_the_models_of_light_it_was_compiled_for() {
     assert!(render(&world, &other(Integrator::Course2020), &Options::default()).is_ok());
     let refused = render(&world, &other(Integrator::Whitted), &Options::default()).unwrap_err();
     assert!(refused.to_string().contains("Whitted"), "{refused}");
-    assert!(snell::render::trace_pixel(&world, &other(Integrator::Whitted), 1, 1).is_none());
+    assert!(trace_pixel(&world, &other(Integrator::Whitted), 1, 1).is_none());
 }

@@ -7,6 +7,7 @@ import { toHex } from '../scene/controls';
 import type { Space } from '../scene/view';
 import type { Store } from '../store';
 import { lightsAt, whyDark } from './light';
+import { LostLightPanel } from './lost';
 
 export function AskPanel({ store, space }: { store: Store; space: Space | null }) {
   const tree = store.tree.value;
@@ -19,6 +20,7 @@ export function AskPanel({ store, space }: { store: Store; space: Space | null }
         {space && <Tree space={space} />}
       </div>
       <Find store={store} tree={pinned === null ? null : tree} />
+      <LostLightPanel store={store} />
     </div>
   );
 }

@@ -2,7 +2,8 @@
 
 import { Session } from 'snell-wasm';
 import type { Answers, DistributedView, Finding, FromDesk, Geometry, PictureOptions, Question, Revision, Sighting, ToDesk } from './protocol';
-import { brokenBy, changed, findingsOf, start } from './session';
+import { lostLight } from './lost';
+import { brokenBy, changed, findingsOf, hasLostLight, start } from './session';
 
 let session: Session | null = null;
 /** The picture that is gathered. */
@@ -27,8 +28,9 @@ function hear(message: ToDesk): void {
       return gather(message.picture, message.options);
     case 'part':
       if (message.picture === picture) {
-        const { x, y, width, height, values, finished } = message.part;
+        const { x, y, width, height, values, lost, finished } = message.part;
         session!.put(x, y, width, height, values, finished);
+        if (lost !== null) session!.put_lost(x, y, width, height, lost);
       }
       return;
     case 'statistics':
@@ -80,7 +82,7 @@ function answer(question: Question): Answers[Question['ask']] {
     case 'values':
       return session!.values(question.x, question.y, question.width, question.height);
     case 'outcome':
-      return { sha256: session!.film_sha256 ?? '', warnings: JSON.parse(session!.validate()) as Finding[] };
+      return outcome(session!);
     case 'glasses':
       return JSON.parse(Session.glasses()) as string[];
     case 'png':
@@ -88,6 +90,14 @@ function answer(question: Question): Answers[Question['ask']] {
     case 'exr':
       return session!.exr() as Uint8Array<ArrayBuffer>;
   }
+}
+
+function outcome(session: Session): Answers['outcome'] {
+  const size = session.size as unknown as [number, number];
+  const { film_sha256: sha256 = '', spp } = session;
+  // The scene may have changed meanwhile, and then there is no picture.
+  const lost = sha256 !== '' && hasLostLight(session) ? lostLight(size, spp, (y, rows) => session.lost(0, y, size[0], rows)) : null;
+  return { sha256, warnings: JSON.parse(session.validate()) as Finding[], lost };
 }
 
 function revision(session: Session): Revision {

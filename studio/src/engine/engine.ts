@@ -16,6 +16,7 @@ import type {
   ToDesk,
   ToRenderer,
 } from './protocol';
+import { buffersOf } from './protocol';
 
 /** What the engine is made of: a page of its own and one in a notebook load it in different ways. */
 export interface EngineParts {
@@ -201,7 +202,7 @@ export class Engine {
         break;
       }
       case 'part':
-        this.tellDesk({ do: 'part', picture: message.picture, part: message.part }, [message.part.values.buffer]);
+        this.tellDesk({ do: 'part', picture: message.picture, part: message.part }, buffersOf(message.part));
         break;
       case 'finished':
         renderer.finished = true;

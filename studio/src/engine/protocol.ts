@@ -5,6 +5,7 @@
 
 import type { RayTreeDocument, ViewMesh, ViewScene } from 'snell-viewer';
 import type { SceneDocument } from '../generated/scene';
+import type { LostLight } from './lost';
 
 /** Something that is wrong with a scene, or odd. */
 export interface Finding {
@@ -85,8 +86,15 @@ export interface Part {
   width: number;
   height: number;
   values: Float64Array;
+  /** The light that the pixels have lost, in the engine's units; `null` if there is none in the whole share. */
+  lost: Float64Array | null;
   /** With all samples? */
   finished: boolean;
+}
+
+/** What is moved with a part, not copied. */
+export function buffersOf({ values, lost }: Part): ArrayBufferLike[] {
+  return lost === null ? [values.buffer] : [values.buffer, lost.buffer];
 }
 
 /** Of what the page tells a worker, the number says which scene or picture it is about. */
@@ -136,8 +144,8 @@ export interface Answers {
   /** For each pixel 1 where something is seen by this path, else 0. */
   path: Float64Array;
   values: Float64Array;
-  /** Of a finished picture. */
-  outcome: { sha256: string; warnings: Finding[] };
+  /** Of a finished picture; `lost` is `null` if nothing was. */
+  outcome: { sha256: string; warnings: Finding[]; lost: LostLight | null };
   /** The names of the catalogue. */
   glasses: string[];
   png: Uint8Array<ArrayBuffer>;

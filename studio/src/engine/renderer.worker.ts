@@ -1,8 +1,8 @@
 /** Renders a share of the picture, a few milliseconds at a time, so that a change is never far away. */
 
 import type { Session } from 'snell-wasm';
-import type { FromRenderer, Part, Patch, PictureOptions, ToRenderer } from './protocol';
-import { brokenBy, changed, findingsOf, start } from './session';
+import { buffersOf, type FromRenderer, type Part, type Patch, type PictureOptions, type ToRenderer } from './protocol';
+import { brokenBy, changed, findingsOf, hasLostLight, start } from './session';
 
 /** Milliseconds that a slice takes. */
 const SLICE = 12;
@@ -130,10 +130,11 @@ class Work {
 
   handOver(): void {
     const finished = session!.is_finished;
+    const isLightLost = hasLostLight(session!);
     for (const { rect } of this.pieces.values()) {
-      const values = session!.values(rect.x, rect.y, rect.width, rect.height);
-      const part: Part = { ...rect, values, finished };
-      tell({ tell: 'part', picture: this.picture, part }, [values.buffer as ArrayBuffer]);
+      const of = [rect.x, rect.y, rect.width, rect.height] as const;
+      const part: Part = { ...rect, values: session!.values(...of), lost: isLightLost ? session!.lost(...of) : null, finished };
+      tell({ tell: 'part', picture: this.picture, part }, buffersOf(part));
     }
   }
 

@@ -21,6 +21,11 @@ export function changed(session: Session | null, change: Change): Session {
   return session;
 }
 
+/** Were there rays of the picture that were not followed? */
+export function hasLostLight(session: Session): boolean {
+  return (JSON.parse(session.statistics()) as { lost: { rays: number } }).lost.rays > 0;
+}
+
 /** What the engine refuses says why; anything else is a fault, after which the instance is of no use. */
 export function findingsOf(error: unknown): Finding[] | null {
   const { findings } = Object(error) as { findings?: string };

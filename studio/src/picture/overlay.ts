@@ -1,4 +1,4 @@
-/** What lies over the picture: the pixel that is asked for, its value and those around it, and where an object is seen. */
+/** What lies over the picture: the pixel that is asked for, its value and those around it, and what is looked for. */
 
 import type { Pixel, Store } from '../store';
 import { project } from './drag';
@@ -6,7 +6,7 @@ import type { Zoom } from './zoom';
 
 /** Pixels of the screen for each of the picture's, from which on numbers fit into it. */
 const LEGIBLE = 54;
-/** Of the mask over what does not show the object. */
+/** Of the mask over what is not looked for. */
 const VEIL = 205;
 
 export class Overlay {
@@ -56,16 +56,16 @@ export class Overlay {
   }
 
   private drawMask(paint: CanvasRenderingContext2D, { scale, x, y }: Zoom): void {
-    const sighting = this.store.sighting.value;
-    if (sighting === null) return;
+    const mask = this.store.mask.value;
+    if (mask === null) return;
     const [width, height] = this.store.revision.value!.size;
-    if (this.masked !== sighting) {
+    if (this.masked !== mask) {
       Object.assign(this.mask, { width, height });
       const veil = new ImageData(width, height);
       // All zero is black: only how thick the veil is has to be said.
-      sighting.mask.forEach((share, pixel) => (veil.data[4 * pixel + 3] = VEIL * (1 - share)));
+      for (let pixel = 0; pixel < mask.length; pixel++) veil.data[4 * pixel + 3] = VEIL * (1 - mask[pixel]!);
       this.mask.getContext('2d')!.putImageData(veil, 0, 0);
-      this.masked = sighting;
+      this.masked = mask;
     }
     paint.imageSmoothingEnabled = false;
     paint.drawImage(this.mask, x, y, width * scale, height * scale);

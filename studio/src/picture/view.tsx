@@ -69,7 +69,7 @@ export function PictureView({ store }: { store: Store }) {
   });
   useSignalEffect(() => {
     lay(store.surface.canvas, placed.value);
-    void [store.hovered.value, store.pinned.value, store.tree.value, store.sighting.value, store.branch.value, store.outcome.value];
+    void [store.hovered.value, store.pinned.value, store.tree.value, store.mask.value, store.branch.value, store.outcome.value];
     overlay.current?.draw(placed.value);
   });
 

@@ -87,6 +87,12 @@ impl<'a> Renderer<'a> {
         self.schedule.statistics()
     }
 
+    /// The light that each pixel of the film has lost so far, over all of its samples, in the whole units of
+    /// [`LostLight`](crate::trace::LostLight). `None` with [`Passes::WholeTiles`], of which only the statistics know.
+    pub fn lost(&self) -> Option<&[u64]> {
+        (self.schedule.options.passes != Passes::WholeTiles).then_some(&self.schedule.lost)
+    }
+
     /// How far it has come.
     pub fn progress(&self) -> Progress {
         self.schedule.progress()
@@ -112,6 +118,8 @@ pub struct Fineness {
 #[derive(Debug)]
 pub(super) struct Schedule<'a> {
     options: Options<'a>,
+    /// Width of the whole picture, and the part of it that is rendered.
+    full_width: u32,
     crop: Crop,
     /// Samples per pixel.
     spp: u32,
@@ -122,13 +130,14 @@ pub(super) struct Schedule<'a> {
     /// How many tiles of it have been taken, and those that were taken and not finished.
     taken: u64,
     again: Vec<u64>,
-    /// Sums of the samples of this pass, and the light that it has lost, pixel by pixel; empty without accumulator.
+    /// Sums of the samples of this pass, pixel by pixel; empty without accumulator.
     planes: Vec<(Block, Vec<Rgb>)>,
-    lost: Vec<u64>,
-    /// What this pass has taken.
-    statistics: Statistics,
     /// What passes before have added up to.
     accumulator: Option<Accumulator>,
+    /// The light that each pixel has lost so far, in whole units; empty if pixels come with all of their samples at once.
+    lost: Vec<u64>,
+    /// What was traced so far.
+    statistics: Statistics,
     /// Samples and rays of all tiles so far.
     samples: u64,
     rays: u64,
@@ -233,9 +242,14 @@ impl<'a> Schedule<'a> {
         film.start_again(size, crop)?;
         let passes = passes(&crop, settings.spp, options.passes);
         let in_one = passes.iter().filter(|pass| pass.completes).count() == 1;
+        let lost = match options.passes {
+            Passes::WholeTiles => Vec::new(),
+            Passes::CoarseToFine { .. } => vec![0; film.pixels.len()],
+        };
         let options = Options { tile_size: options.tile_size.clamp(1, 1 << 15), ..*options };
         Ok(Self {
             options,
+            full_width: size[0],
             crop,
             spp: settings.spp,
             passes,
@@ -243,9 +257,9 @@ impl<'a> Schedule<'a> {
             taken: 0,
             again: Vec::new(),
             planes: Vec::new(),
-            lost: Vec::new(),
+            accumulator: (!in_one).then(Accumulator::default),
+            lost,
             statistics: Statistics::default(),
-            accumulator: (!in_one).then(|| Accumulator::new(size[0], crop)),
             samples: 0,
             rays: 0,
         })
@@ -256,8 +270,16 @@ impl<'a> Schedule<'a> {
     }
 
     pub fn statistics(&self) -> Statistics {
-        let mut all = self.accumulator.as_ref().map(Accumulator::statistics).unwrap_or_default();
-        all.merge(&self.statistics);
+        let mut all = self.statistics.clone();
+        if !self.lost.is_empty() {
+            // The worst pixel of all samples need not be the worst of any pass.
+            let (width, full_width) = (u64::from(self.crop.width), u64::from(self.full_width));
+            let pixels = self.lost.iter().zip(0..).filter(|(lost, _)| **lost > 0).map(|(&lost, at)| {
+                let (column, row) = (at % width, at / width);
+                ((u64::from(self.crop.y) + row) * full_width + u64::from(self.crop.x) + column, lost)
+            });
+            all.lost = all.lost.with_worst_of(pixels);
+        }
         all
     }
 
@@ -289,7 +311,6 @@ impl<'a> Schedule<'a> {
         if self.accumulator.is_some() && self.planes.is_empty() {
             let blocks = Block::of(pass.samples.clone());
             self.planes = blocks.into_iter().map(|block| (block, vec![Rgb::black(); count])).collect();
-            self.lost = vec![0; count];
         }
         let [columns, rows] = pass.tiles(&self.crop, size);
         let order = Spread::new(columns * rows);
@@ -354,13 +375,12 @@ impl<'a> Schedule<'a> {
         self.passes.pop_front();
         self.taken = 0;
         if completes_samples && let Some(accumulator) = &mut self.accumulator {
-            let (planes, lost) = (std::mem::take(&mut self.planes), std::mem::take(&mut self.lost));
-            accumulator.add(planes, lost, &std::mem::take(&mut self.statistics));
+            accumulator.add(std::mem::take(&mut self.planes));
         }
     }
 }
 
-/// One row of tiles: its part of the film, and of the sums of this pass.
+/// One row of tiles: its part of the film, of the sums of this pass, and of the light that was lost.
 struct Band<'a> {
     /// The number of its first pixel in the film.
     first: usize,
@@ -481,7 +501,6 @@ impl Shared<'_> {
                     for (plane, (_, sums)) in planes.iter_mut().zip(traced.sums.blocks()) {
                         plane[to] = sums[from];
                     }
-                    lost[to] = traced.lost[from];
                     let blocks = traced.sums.blocks().iter().map(|(_, sums)| sums[from]);
                     let color = mean(accumulator.sum_with(*first + to, blocks), count);
                     (colors[to], finished[to]) = (color, true);
@@ -503,6 +522,12 @@ impl Shared<'_> {
                     let row = colors[start..].iter_mut().step_by(step).take(sums.len());
                     row.for_each(|color| *color = mean(*color, count));
                 }
+            }
+        }
+        if !lost.is_empty() {
+            for (start, traced) in row_starts.zip(traced.lost.chunks(tile.width as usize)) {
+                let row = lost[start..].iter_mut().step_by(step);
+                row.zip(traced).for_each(|(sum, &lost)| *sum = sum.saturating_add(lost));
             }
         }
         if step > 1 {
