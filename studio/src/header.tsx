@@ -19,7 +19,7 @@ interface Props {
 }
 
 export function Header({ store, work, openGallery, openFiles, startTour, startExercises }: Props) {
-  const { value: undo } = store.undoLabel;
+  const undo = store.draft.value === null ? store.undoLabel.value : 'what was written';
   const { value: redo } = store.redoLabel;
   const said = useSignal('');
   const say = (words: string) => {

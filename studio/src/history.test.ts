@@ -49,6 +49,22 @@ test('the same text again is no step', () => {
   expect(history.undoLabel).toBe(null);
 });
 
+test('what is being written stays with the version that is left, until it is shown again', () => {
+  const history = new History<number>();
+  history.keepDraft('too early');
+  history.record(version('a'));
+  history.keepDraft('a, broken');
+  history.record({ base: 2, text: 'b', label: 'open b' });
+  expect(history.takeDraft()).toBe(null);
+  history.move(-1);
+  expect([history.current!.text, history.takeDraft()]).toEqual(['a', 'a, broken']);
+  // It is in a person's hands now, who may drop it.
+  history.keepDraft(null);
+  history.move(1);
+  history.move(-1);
+  expect(history.takeDraft()).toBe(null);
+});
+
 test('memory is bounded, and the newest version always stays', () => {
   const history = new History<number>();
   for (let count = 0; count < 10; count++) history.record(version(`${count}`.padStart(20e6)));

@@ -6,6 +6,8 @@ export interface Version<Base> {
   text: string;
   /** What was done to come here, for the buttons: “Undo: move glass”. */
   label: string;
+  /** What was being written when it was left, and makes no scene. */
+  draft?: string;
 }
 
 /** Characters of text that are kept; older versions than that are forgotten. */
@@ -47,6 +49,18 @@ export class History<Base> {
     this.at = this.versions.length - 1;
   }
 
+  /** Keeps what is being written with the version that is shown, which is to be left. */
+  keepDraft(draft: string | null): void {
+    if (this.current && draft !== null) this.current.draft = draft;
+  }
+
+  /** Hands out what was being written when the version that is shown was left. */
+  takeDraft(): string | null {
+    const draft = this.current?.draft ?? null;
+    delete this.current?.draft;
+    return draft;
+  }
+
   move(steps: -1 | 1): void {
     if (this.peek(steps) === undefined) return;
     this.at += steps;
@@ -56,7 +70,10 @@ export class History<Base> {
   private forgetOld(): void {
     let kept = 0;
     let first = this.versions.length;
-    while (first > 0 && kept <= MOST_TEXT) kept += this.versions[--first]!.text.length;
+    while (first > 0 && kept <= MOST_TEXT) {
+      const { text, draft = '' } = this.versions[--first]!;
+      kept += text.length + draft.length;
+    }
     // The one that is shown always stays.
     if (kept > MOST_TEXT) this.versions.splice(0, Math.min(first + 1, this.versions.length - 1));
   }

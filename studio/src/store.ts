@@ -192,6 +192,7 @@ export class Store {
   /** Changes values of the scene. What is refused is told by `refused`. */
   edit(edits: Edit[], { label, group = undefined }: EditOptions): void {
     this.readDraft();
+    this.readDraft();
     const last = this.steps.at(-1);
     // Of a drag only the newest place counts.
     if (last && group !== undefined && last.group === group && typeof last.change === 'object' && 'edit' in last.change) {
@@ -240,7 +241,8 @@ export class Store {
   }
 
   redo(): void {
-    if (this.draft.value === null) this.travel(1);
+    this.readDraft();
+    this.travel(1);
   }
 
   /** Ends the picture as it is. */
@@ -433,7 +435,10 @@ export class Store {
       const { base, text, label } = version;
       const revision = await this.read({ change: base === this.base.value ? { revise: text } : { open: base.given }, text });
       this.history.move(change);
-      this.show(revision, { base, label, group: null });
+      const draft = this.history.takeDraft();
+      this.show(revision, { base, label, group: null, draft });
+      // It is read once more, to say what is wrong with it.
+      if (draft !== null) this.write(draft);
       return;
     }
     // Or what was written would be lost.
@@ -441,13 +446,16 @@ export class Store {
       const help = 'Mend it under “Source”, or undo what was written there.';
       throw new Refusal([{ message: 'The text of the scene has an error, so that nothing else can be changed.', help }]);
     }
-    this.show(await this.read({ ...step, change }), step);
+    const revision = await this.read({ ...step, change });
+    if (step.base) this.history.keepDraft(this.draft.value);
+    this.show(revision, step);
   }
 
   private async read({ change, text }: { change: Change; text?: string }): Promise<CompleteRevision> {
     const before = this.history.current;
     // After a failure the engine is empty.
     if (!this.isOpen && !('open' in change) && before) {
+      this.history.keepDraft(this.draft.value);
       await this.read({ change: { open: before.base.given }, text: before.text });
     }
     const revision = await this.engine.change(change);
@@ -456,11 +464,11 @@ export class Store {
     return text === undefined || text === revision.text ? revision : this.engine.change({ revise: text });
   }
 
-  private show(revision: CompleteRevision, step: Pick<Step, 'base' | 'label' | 'group'>): void {
+  private show(revision: CompleteRevision, step: Pick<Step, 'base' | 'label' | 'group'> & { draft?: string | null }): void {
     batch(() => {
       const base = step.base ?? this.base.value!;
       // More may have been written meanwhile.
-      if (this.draft.value === revision.text || step.base) this.draft.value = null;
+      else if (this.draft.value === revision.text) this.draft.value = null;
       this.pristine.value = 'builtin' in base.given && revision.text === this.openedText;
       this.refused.value = [];
       this.sighting.value = null;
@@ -475,6 +483,7 @@ export class Store {
     });
     this.explain();
   }
+      if (step.base) this.draft.value = step.draft ?? null;
 
   /** One picture after the other: a drag that is faster than they come waits for each, so that it is seen to move. */
   private firstPass(): Promise<void> {
@@ -551,7 +560,8 @@ export class Store {
       if (!again) await this.engine.restart();
       if (version !== undefined && !again) {
         const revision = await this.read({ change: { open: version.base.given }, text: version.text });
-        this.show(revision, { base: version.base, label: version.label, group: null });
+        // What is being written may be what failed: it is not read again before it is changed.
+        this.show(revision, { base: version.base, label: version.label, group: null, draft: this.draft.value });
       }
       if (message !== null) {
         const help = again ? 'Undo, or change the scene.' : 'It goes on with the scene as it was.';

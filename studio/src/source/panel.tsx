@@ -20,7 +20,7 @@ export function SourcePanel({ store }: { store: Store }) {
     void import('./editor').then(({ SourceEditor }) => {
       if (gone) return;
       const editor = new SourceEditor(place.current!, {
-        text: store.draft.value ?? store.revision.value?.text ?? '',
+        text: textOf(store),
         label: 'Source of the scene, in TOML',
         onChange: (text) => store.write(text),
         onHistory: (step) => (step === 'undo' ? store.undo() : store.redo()),
@@ -28,9 +28,7 @@ export function SourcePanel({ store }: { store: Store }) {
       });
       const dark = window.matchMedia('(prefers-color-scheme: dark)');
       const ends = [
-        effect(() => {
-          if (store.draft.value === null) editor.setText(store.revision.value?.text ?? '');
-        }),
+        effect(() => editor.setText(textOf(store))),
         effect(() => {
           const others = new Set(filesOf(store));
           editor.setFindings([...store.refused.value, ...store.warnings.value].filter(({ place }) => place && !others.has(place.file)));
@@ -49,6 +47,11 @@ export function SourcePanel({ store }: { store: Store }) {
     };
   }, []);
   return <div ref={place} class="source" />;
+}
+
+/** What is being written, or else the scene. */
+function textOf(store: Store): string {
+  return store.draft.value ?? store.revision.value?.text ?? '';
 }
 
 function filesOf(store: Store): string[] {
