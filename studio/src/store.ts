@@ -1,12 +1,13 @@
 /** What the studio shows, and all that can be done to it. Views read the signals and call the methods; they hold no scene of their own. */
 
 import { batch, computed, effect, signal } from '@preact/signals';
-import type { RayTreeDocument } from 'snell-viewer';
+import type { ObjectRef, RayTreeDocument } from 'snell-viewer';
 import { Cancelled, Engine, type EngineParts, Refusal } from './engine/engine';
 import type { Answers, Change, CompleteRevision, Edit, Finding, Given, PictureOptions, Sighting } from './engine/protocol';
 import { History, type Version } from './history';
 import { Surface } from './picture/surface';
 import { objectsOf, type SceneObject } from './scene/objects';
+import { nearest, shownThings } from './scene/shown';
 
 export type Pixel = [number, number];
 
@@ -98,31 +99,33 @@ export class Store {
   readonly tree = signal<RayTreeDocument | null>(null);
   /** Where the ray of the tree ends that is pointed at, if it meets something. */
   readonly branch = signal<[number, number, number] | null>(null);
-  readonly selectedName = signal<string | null>(null);
+  readonly selectedKey = signal<string | null>(null);
   /** What the handles of the selected object do, and whether they snap to round steps. */
   readonly handles = signal<'move' | 'turn' | 'scale'>('move');
   readonly snaps = signal(false);
   readonly sighting = signal<ShownSighting | null>(null);
-  readonly comparison = signal<Comparison | null>(null);
   /** Of the light that pixels have lost: the bin whose pixels are shown, and the one that is pointed at. */
   readonly chosenBin = signal<number | null>(null);
   readonly pointedBin = signal<number | null>(null);
+  readonly comparison = signal<Comparison | null>(null);
   readonly undoLabel = signal<string | null>(null);
   readonly redoLabel = signal<string | null>(null);
 
   readonly objects = computed(() => (this.revision.value ? objectsOf(this.revision.value.scene) : []));
-  readonly selected = computed(() => this.objects.value.find(({ name }) => name === this.selectedName.value) ?? null);
+  readonly selected = computed(() => this.objects.value.find(({ key }) => key === this.selectedKey.value) ?? null);
+  /** What each object is in the drawing, by its key. */
+  readonly things = computed(() => (this.revision.value ? shownThings(this.objects.value, this.revision.value.view) : new Map<string, ObjectRef[]>()));
   readonly warnings = computed(() => this.outcome.value?.warnings ?? this.revision.value?.warnings ?? []);
   readonly asked = computed(() => this.pinned.value ?? this.hovered.value);
-
-  readonly surface = new Surface();
-  /** Where what is rendered goes. */
   /** For each pixel how much of it stays to be seen, while something is looked for in the picture. */
   readonly mask = computed<ArrayLike<number> | null>(() => {
     const bin = this.pointedBin.value ?? this.chosenBin.value;
     const lost = this.outcome.value?.lost;
     return bin !== null && lost ? lost.bins.map((of) => Number(of === bin)) : (this.sighting.value?.mask ?? null);
   });
+
+  readonly surface = new Surface();
+  /** Where what is rendered goes. */
   private target = this.surface;
   readonly engine: Engine;
   private readonly history = new History<Base>();
@@ -184,14 +187,17 @@ export class Store {
     this.notes.value = [...this.notes.value, { message: words }];
   }
 
-  /** Opens a scene in place of the one that is shown, with a text that it has been given since. Rejects with a `Refusal`. */
+  /**
+   * Opens a scene in place of the one that is shown, with a text that it has been given since. Undo brings back that one, and what was
+   * being written there. Rejects with a `Refusal`.
+   */
   open(base: Base, { label = `open ${base.name}`, text }: { label?: string; text?: string } = {}): Promise<void> {
+    this.readDraft();
     return this.enqueue({ change: { open: base.given }, label, group: null, base, ...(text === undefined ? {} : { text }) });
   }
 
   /** Changes values of the scene. What is refused is told by `refused`. */
   edit(edits: Edit[], { label, group = undefined }: EditOptions): void {
-    this.readDraft();
     this.readDraft();
     const last = this.steps.at(-1);
     // Of a drag only the newest place counts.
@@ -258,6 +264,7 @@ export class Store {
     this.target = this.surface;
     this.surface.begin(...revision.value.size);
     this.outcome.value = null;
+    this.pointedBin.value = null;
     this.stopped.value = false;
     this.begun = performance.now();
     this.engine.render({}, hold);
@@ -266,7 +273,6 @@ export class Store {
   /** Lays the picture beside itself with other options, beside itself as it is now, or beside nothing. */
   compare(label: string | null, options: PictureOptions | null = null): void {
     if (label === null) {
-    this.pointedBin.value = null;
       this.comparison.value = null;
       if (this.target !== this.surface) this.render();
       return;
@@ -298,15 +304,25 @@ export class Store {
     if (this.pinned.value === null) this.explain();
   }
 
-  select(object: SceneObject | string | null): void {
-    this.selectedName.value = object === null || typeof object === 'string' ? object : object.name;
+  /** Selects an object by its key. */
+  select(key: string | null): void {
+    this.selectedKey.value = key;
+  }
+
+  /** The object that something in the drawing is. */
+  objectOf({ kind, index }: ObjectRef): SceneObject | null {
+    const isIt = (thing: ObjectRef) => thing.kind === kind && thing.index === index;
+    return this.objects.value.find(({ key }) => this.things.value.get(key)?.some(isIt)) ?? null;
   }
 
   /** The object that is seen first at a pixel. */
-  async seenAt(pixel: Pixel | null): Promise<string | null> {
+  async seenAt(pixel: Pixel | null): Promise<SceneObject | null> {
     try {
       const tree = pixel && (await this.engine.ask({ ask: 'explain', pixel }));
-      return tree?.samples[0]?.nodes[0]?.hit?.object ?? null;
+      const hit = tree?.samples[0]?.nodes[0]?.hit;
+      const called = [...this.things.value.values()].flat().filter(({ kind, name }) => name === hit?.object && kind !== 'light' && kind !== 'camera');
+      const thing = hit && nearest(called, hit.point, this.revision.value!.view);
+      return thing ? this.objectOf(thing) : null;
     } catch {
       // Then it cannot be dragged, and a click on it says why.
       return null;
@@ -315,6 +331,7 @@ export class Store {
 
   async find(object: string | null): Promise<void> {
     this.sighting.value = null;
+    this.chosenBin.value = null;
     if (object === null) return;
     await this.search(`Looking for ${object} in every pixel …`, async () => {
       const found = await this.engine.ask({ ask: 'find', object });
@@ -328,7 +345,6 @@ export class Store {
     if (found === null) return;
     const { all } = found;
     if (path === null) {
-    this.chosenBin.value = null;
       this.sighting.value = { ...found, mask: all, path };
       return;
     }
@@ -351,6 +367,12 @@ export class Store {
     }
   }
 
+  /** Shows the pixels that have lost so much light, or all. */
+  chooseBin(bin: number | null): void {
+    this.sighting.value = null;
+    this.chosenBin.value = bin;
+  }
+
   /** A file with the picture as far as it has come. */
   async save(format: 'png' | 'exr'): Promise<Uint8Array<ArrayBuffer>> {
     this.saving++;
@@ -369,12 +391,6 @@ export class Store {
 
   /** The numbers of a part of the picture, as far as they are at hand. */
   async values(x: number, y: number, width: number, height: number): Promise<Float64Array | null> {
-  /** Shows the pixels that have lost so much light, or all. */
-  chooseBin(bin: number | null): void {
-    this.sighting.value = null;
-    this.chosenBin.value = bin;
-  }
-
     return this.target === this.surface ? this.engine.ask({ ask: 'values', x, y, width, height }) : null;
   }
 
@@ -434,6 +450,7 @@ export class Store {
       if (version === undefined) return;
       const { base, text, label } = version;
       const revision = await this.read({ change: base === this.base.value ? { revise: text } : { open: base.given }, text });
+      this.history.keepDraft(this.draft.value);
       this.history.move(change);
       const draft = this.history.takeDraft();
       this.show(revision, { base, label, group: null, draft });
@@ -455,7 +472,6 @@ export class Store {
     const before = this.history.current;
     // After a failure the engine is empty.
     if (!this.isOpen && !('open' in change) && before) {
-      this.history.keepDraft(this.draft.value);
       await this.read({ change: { open: before.base.given }, text: before.text });
     }
     const revision = await this.engine.change(change);
@@ -467,11 +483,13 @@ export class Store {
   private show(revision: CompleteRevision, step: Pick<Step, 'base' | 'label' | 'group'> & { draft?: string | null }): void {
     batch(() => {
       const base = step.base ?? this.base.value!;
+      if (step.base) this.draft.value = step.draft ?? null;
       // More may have been written meanwhile.
       else if (this.draft.value === revision.text) this.draft.value = null;
       this.pristine.value = 'builtin' in base.given && revision.text === this.openedText;
       this.refused.value = [];
       this.sighting.value = null;
+      this.chosenBin.value = null;
       this.base.value = base;
       this.revision.value = revision;
       this.history.record({ base, text: revision.text, label: step.label }, step.group);
@@ -483,7 +501,6 @@ export class Store {
     });
     this.explain();
   }
-      if (step.base) this.draft.value = step.draft ?? null;
 
   /** One picture after the other: a drag that is faster than they come waits for each, so that it is seen to move. */
   private firstPass(): Promise<void> {
@@ -498,7 +515,6 @@ export class Store {
   }
 
   private travel(steps: -1 | 1): void {
-      this.chosenBin.value = null;
     this.enqueue({ change: steps, label: '', group: null, base: null }).catch(() => {});
   }
 

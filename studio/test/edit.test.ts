@@ -70,7 +70,7 @@ test('a prism is turned by its handle', () =>
     // Many rays for each pixel: few pixels.
     await edit(page, ['render.size', '[64, 48]']);
     const before = await text(page);
-    await page.evaluate(() => window.snell.select('prism'));
+    await page.evaluate(() => window.snell.select(window.snell.objects.value.find(({ name }) => name === 'prism')!.key));
     await page.getByRole('button', { name: 'Turn' }).click();
     const { x, y } = await tipOf(page, { do: 'turn', axis: [0, 1, 0] });
     await drag(page, { x, y }, [40, 10]);

@@ -100,7 +100,7 @@ function Find({ store, tree }: { store: Store; tree: RayTreeDocument | null }) {
     const nodes = store.tree.value?.samples.flatMap((sample) => sample.nodes) ?? [];
     const met = new Set(nodes.map(({ hit }) => hit?.object).filter((name): name is string => name !== undefined));
     const { spheres = [], meshes = [] } = store.revision.value?.view ?? {};
-    return tree === null ? [...spheres, ...meshes].slice(0, 12).map(({ name }) => name) : [...met];
+    return tree === null ? [...new Set([...spheres, ...meshes].map(({ name }) => name))].slice(0, 12) : [...met];
   }).value;
   if (names.length === 0) return null;
   return (

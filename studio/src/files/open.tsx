@@ -55,9 +55,11 @@ async function showModel(store: Store, { model, files }: { model: string; files:
   const name = `${model.split('/').at(-1)!.replace(/\.\w+$/, '')}.toml`;
   await store.open({ name, given: { name: folder + name, text, files } });
   const object = store.objects.value.find(({ kind }) => kind === 'mesh');
-  const place = object && placeOf(object, store.revision.value!.view);
+  const thing = object && store.things.value.get(object.key)?.[0];
+  const { view } = store.revision.value!;
+  const place = thing && placeOf(object, thing, view);
   if (!place) return;
-  const { vertices } = store.revision.value!.view.meshes.find((mesh) => mesh.name === object.name)!;
+  const { vertices } = view.meshes[thing.index]!;
   let low = Infinity;
   for (let at = 1; at < vertices.length; at += 3) low = Math.min(low, vertices[at]!);
   store.edit(editsFor(place.center, place.radius, low), { label: 'look at the model' });

@@ -2,7 +2,7 @@
 
 import { useEffect, useRef } from 'preact/hooks';
 import { untracked, useComputed, useSignal, useSignalEffect } from '@preact/signals';
-import { placeOf, roundTo, type Vec3 } from '../scene/objects';
+import { placeOf, roundTo, type SceneObject, type Vec3 } from '../scene/objects';
 import { editsFor } from '../scene/movement';
 import type { Pixel, Store } from '../store';
 import { ComparisonSlider } from './comparison';
@@ -15,7 +15,7 @@ const CLICK = 4;
 const KEYS: Record<string, Pixel> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
 
 type Gesture =
-  | { kind: 'press'; x: number; y: number; pixel: Pixel | null; seen: Promise<string | null> }
+  | { kind: 'press'; x: number; y: number; pixel: Pixel | null; seen: Promise<SceneObject | null> }
   /** What is seen where the pointer came down is not known yet. */
   | { kind: 'wait'; to: { x: number; y: number }; released: boolean }
   | { kind: 'pan' }
@@ -83,16 +83,16 @@ export function PictureView({ store }: { store: Store }) {
   };
 
   /** What a drag moves that begins where this is seen first. */
-  const grip = (name: string | null): ((dx: number, dy: number) => void) | null => {
-    const object = store.objects.value.find((one) => one.name === name);
+  const grip = (seen: SceneObject | null): ((dx: number, dy: number) => void) | null => {
+    const object = store.objects.value.find(({ key }) => key === seen?.key);
     const { view } = store.revision.value!;
-    const place = object && placeOf(object, view);
+    const place = object && placeOf(object, store.things.value.get(object.key)?.[0], view);
     if (!place) return null;
-    store.select(object);
+    store.select(object.key);
     const group = `drag ${object.key} ${performance.now()}`;
     return (dx, dy) => {
       const by = dragged(view.camera, size(), place.center, dx, dy).map((value) => roundTo(value, place.radius)) as Vec3;
-      store.edit(editsFor(object, { kind: 'move', by }, place.center), { label: `move ${object.name}`, group });
+      store.edit(editsFor(object, { kind: 'move', by }, place.center), { label: `move ${object.title}`, group });
     };
   };
 
@@ -118,9 +118,9 @@ export function PictureView({ store }: { store: Store }) {
     if (state?.kind === 'press' && Math.hypot(here.x - state.x, here.y - state.y) > CLICK) {
       const waits = { kind: 'wait' as const, to: here, released: false };
       gesture.current = waits;
-      void state.seen.then((name) => {
+      void state.seen.then((object) => {
         if (gesture.current !== waits && !waits.released) return;
-        const moves = grip(name);
+        const moves = grip(object);
         if (!waits.released) gesture.current = moves ? { kind: 'drag', x: state.x, y: state.y, move: moves } : { kind: 'pan' };
         moves?.((waits.to.x - state.x) / zoom.value.scale, (waits.to.y - state.y) / zoom.value.scale);
       });

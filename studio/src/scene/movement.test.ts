@@ -15,16 +15,27 @@ const scene = {
 const objects = objectsOf(scene);
 const named = (name: string) => objects.find((object) => object.name === name)!;
 
-test('things without a name go by their kind and number, as the engine calls them', () => {
+test('things without a name go by their file, or by their kind and number, as the engine calls them', () => {
   expect(objects.map(({ name, key }) => `${name} ${key}`)).toEqual([
-    'sphere 1 sphere.1', 'a "b" sphere."a \\"b\\""', 'mesh 1 mesh.1', 'box 1 box.1', 'light 1 light.1', 'sun light.sun', 'camera camera',
+    'sphere 1 sphere.1', 'a "b" sphere."a \\"b\\""', 'm.obj mesh.1', 'box 1 box.1', 'light 1 light.1', 'sun light.sun', 'camera camera',
   ]);
 });
 
 test('something that is called like the number of another is not mistaken for it', () => {
-  const named2 = { ...scene, sphere: [{ ...scene.sphere![0]!, name: '2' }, { ...scene.sphere![0]!, name: 'x' }, { ...scene.sphere![0]!, name: 'x' }] };
-  expect(objectsOf(named2).slice(0, 3).map(({ key }) => key)).toEqual(['sphere.2', 'sphere.x', 'sphere.3']);
+  expect(keysAndTitles('2', 'x', undefined)).toEqual(['sphere.2 2', 'sphere.x x', 'sphere.3 sphere 3']);
+  expect(keysAndTitles('2', undefined, '02')).toEqual(['sphere.2 2', 'sphere.002 sphere 2', 'sphere.02 02']);
 });
+
+test('things of the same name have keys and titles of their own', () => {
+  expect(keysAndTitles('x', 'y', 'x')).toEqual(['sphere.1 x', 'sphere.y y', 'sphere.3 x (2)']);
+  expect(keysAndTitles('sphere 2', undefined)).toEqual(['sphere."sphere 2" sphere 2', 'sphere.2 sphere 2 (2)']);
+});
+
+function keysAndTitles(...names: (string | undefined)[]): string[] {
+  const spheres = names.map((name) => ({ ...scene.sphere![0]!, name }));
+  const objects = objectsOf({ ...scene, sphere: spheres } as unknown as SceneDocument);
+  return objects.slice(0, names.length).map(({ key, title }) => `${key} ${title}`);
+}
 
 test('a move has no noise in its digits', () => {
   expect(editsFor(named('sphere 1'), { kind: 'move', by: [0.2, 0, 0] }, [0.1, 0.2, 0.3])).toEqual([['sphere.1.center', '[0.3, 0.2, 0.3]']]);
@@ -46,10 +57,10 @@ test('what has been placed by steps is moved by its last one', () => {
 });
 
 test('turning about the middle, twice, stays three steps', () => {
-  const turned = editsFor(named('mesh 1'), { kind: 'turn', axis: [0, 1, 0], degrees: 15 }, [1, 2, 3]);
+  const turned = editsFor(named('m.obj'), { kind: 'turn', axis: [0, 1, 0], degrees: 15 }, [1, 2, 3]);
   expect(turned).toEqual([['mesh.1.transform', '[{ move = [-1, -2, -3] }, { rotate = { axis = [0, 1, 0], degrees = 15 } }, { move = [1, 2, 3] }]']]);
   const mesh = {
-    ...named('mesh 1'),
+    ...named('m.obj'),
     data: { file: 'm.obj', transform: [{ move: [-1, -2, -3] }, { rotate: { axis: [0, 1, 0], degrees: 15 } }, { move: [1, 2, 3] }] },
   } as ReturnType<typeof named>;
   expect(editsFor(mesh, { kind: 'turn', axis: [0, 1, 0], degrees: 10 }, [1, 2, 3])[0]![1]).toMatch('degrees = 25');

@@ -1,6 +1,6 @@
 /** The things of a scene that one can point at, with the keys of their values in its text. */
 
-import type { ViewScene } from 'snell-viewer';
+import type { ObjectRef, ViewScene } from 'snell-viewer';
 import type { SceneDocument } from '../generated/scene';
 
 export type Vec3 = [number, number, number];
@@ -10,25 +10,43 @@ export const SHAPES: ShapeKind[] = ['sphere', 'mesh', 'plane', 'box', 'disc', 'l
 
 type Elements = { [K in ShapeKind]: NonNullable<SceneDocument[K]>[number] };
 
-export type SceneObject =
-  | { [K in ShapeKind]: { kind: K; name: string; key: string; data: Elements[K] } }[ShapeKind]
-  | { kind: 'light'; name: string; key: string; data: NonNullable<SceneDocument['light']>[number] }
-  /** Its eye, and the point that it looks at. */
-  | { kind: 'camera' | 'target'; name: string; key: 'camera'; data: SceneDocument['camera'] };
+interface Called {
+  /** As the engine calls it, which may call others the same. */
+  name: string;
+  /** As people tell it from the others. */
+  title: string;
+  /** Of its values in the text, and of no other's. */
+  key: string;
+}
 
-/** Everything, in the order of the file; names are those that the engine uses. */
+export type SceneObject = Called &
+  (
+    | { [K in ShapeKind]: { kind: K; data: Elements[K] } }[ShapeKind]
+    | { kind: 'light'; data: NonNullable<SceneDocument['light']>[number] }
+    /** Its eye, and the point that it looks at. */
+    | { kind: 'camera' | 'target'; key: 'camera'; data: SceneDocument['camera'] }
+  );
+
+/** Everything, in the order of the file. */
 export function objectsOf(scene: SceneDocument): SceneObject[] {
   const shapes = SHAPES.flatMap((kind) => elements(kind, scene[kind]));
   const camera = { kind: 'camera', name: 'camera', key: 'camera', data: scene.camera };
-  return [...shapes, ...elements('light', scene.light), camera] as SceneObject[];
+  const times = new Map<string, number>();
+  return [...shapes, ...elements('light', scene.light), camera].map((object) => {
+    const time = 1 + (times.get(object.name) ?? 0);
+    times.set(object.name, time);
+    return { ...object, title: time === 1 ? object.name : `${object.name} (${time})` } as SceneObject;
+  });
 }
 
-function elements(kind: string, list: { name?: string | null }[] = []) {
+function elements(kind: string, list: { name?: string | null; file?: string | null }[] = []) {
+  const names = list.map(({ name }) => name);
   return list.map((data, index) => {
-    // A number is looked for among the names first: something may be called 2 and not be the second.
-    const isFirst = data.name != null && list.findIndex(({ name }) => name === data.name) === index;
-    const key = `${kind}.${isFirst ? quoted(data.name!) : index + 1}`;
-    return { kind, name: data.name ?? `${kind} ${index + 1}`, key, data };
+    const isUnique = data.name != null && names.indexOf(data.name) === names.lastIndexOf(data.name);
+    let number = String(index + 1);
+    // Names go before numbers: something may be called 2 and not be the second, but hardly 02 as well.
+    while (names.includes(number)) number = `0${number}`;
+    return { kind, name: data.name ?? data.file ?? `${kind} ${index + 1}`, key: `${kind}.${isUnique ? quoted(data.name!) : number}`, data };
   });
 }
 
@@ -59,21 +77,24 @@ export function snapOf({ camera }: SceneDocument): number {
   return 10 ** Math.floor(Math.log10(away / 20));
 }
 
-/** The middle of an object as it is seen, and how far it reaches; nothing for what has no place. */
-export function placeOf(object: SceneObject, view: ViewScene): { center: Vec3; radius: number } | null {
+/** The middle of an object as it is seen, and how far it reaches; nothing for what has no place. `thing` is what it is in the drawing. */
+export function placeOf(object: SceneObject, thing: ObjectRef | undefined, view: ViewScene): { center: Vec3; radius: number } | null {
   if (object.kind === 'camera') return { center: object.data.eye as Vec3, radius: 0 };
   if (object.kind === 'target') return { center: object.data.look_at as Vec3, radius: 0 };
-  if (object.kind === 'light') {
-    const light = view.lights.find(({ name }) => name === object.name);
-    return light?.position ? { center: light.position, radius: 0 } : null;
+  if (thing === undefined) return null;
+  if (thing.kind === 'light') {
+    const { position } = view.lights[thing.index]!;
+    return position && { center: position, radius: 0 };
   }
-  const sphere = view.spheres.find(({ name }) => name === object.name);
-  if (sphere) return { center: sphere.center, radius: sphere.radius };
-  const mesh = view.meshes.find(({ name }) => name === object.name);
-  return mesh && mesh.vertices.length > 0 ? boundsOf(mesh.vertices) : null;
+  if (thing.kind === 'sphere') {
+    const { center, radius } = view.spheres[thing.index]!;
+    return { center, radius };
+  }
+  const { vertices } = view.meshes[thing.index]!;
+  return vertices.length > 0 ? boundsOf(vertices) : null;
 }
 
-function boundsOf(vertices: ArrayLike<number>): { center: Vec3; radius: number } {
+export function boundsOf(vertices: ArrayLike<number>): { center: Vec3; radius: number } {
   const [low, high]: [Vec3, Vec3] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
   for (let at = 0; at < vertices.length; at++) {
     const axis = at % 3;

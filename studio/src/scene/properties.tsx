@@ -39,7 +39,7 @@ function ObjectPicker({ store }: { store: Store }) {
   const objects = store.objects.value;
   const search = useSignal('');
   const wanted = search.value.toLowerCase();
-  const found = objects.filter(({ name, kind }) => `${kind} ${name}`.toLowerCase().includes(wanted));
+  const found = objects.filter(({ title, kind }) => `${kind} ${title}`.toLowerCase().includes(wanted));
   return (
     <section aria-labelledby="objects">
       <h2 id="objects">Objects</h2>
@@ -52,10 +52,10 @@ function ObjectPicker({ store }: { store: Store }) {
             type="button"
             class="chip"
             key={object.key}
-            aria-pressed={store.selectedName.value === object.name}
-            onClick={() => store.select(store.selectedName.value === object.name ? null : object)}
+            aria-pressed={store.selectedKey.value === object.key}
+            onClick={() => store.select(store.selectedKey.value === object.key ? null : object.key)}
           >
-            <span aria-hidden="true">{MARKS[object.kind]}</span> {object.name}
+            <span aria-hidden="true">{MARKS[object.kind]}</span> {object.title}
           </button>
         ))}
         {found.length > MANY && <span class="quiet">and {found.length - MANY} more: search for them</span>}
@@ -74,7 +74,12 @@ function AddAndRemove({ store }: { store: Store }) {
   const add = (kind: Addable) => {
     const name = freeName(kind, new Set(store.objects.value.map((object) => object.name)));
     store.edit([[kind, elementOf(kind, name, scene)]], { label: `add ${name}` });
-    store.select(name);
+    store.select(`${kind}.${quoted(name)}`);
+  };
+  const remove = () => {
+    store.edit([[selected!.key, null]], { label: `remove ${selected!.title}` });
+    // Its number may be another one's then.
+    store.select(null);
   };
   return (
     <div class="group">
@@ -94,8 +99,8 @@ function AddAndRemove({ store }: { store: Store }) {
         ))}
       </select>
       {selected && selected.kind !== 'camera' && (
-        <button type="button" onClick={() => store.edit([[selected.key, null]], { label: `remove ${selected.name}` })}>
-          Remove {selected.name}
+        <button type="button" onClick={remove}>
+          Remove {selected.title}
         </button>
       )}
     </div>
@@ -107,9 +112,9 @@ function ObjectValues({ store, object, scene }: { store: Store; object: SceneObj
   const materials = Object.keys(scene.material ?? {});
   const transfer = scene.render.transfer ?? 'srgb';
   return (
-    <section aria-label={`Values of ${object.name}`}>
+    <section aria-label={`Values of ${object.title}`}>
       <h2>
-        {object.name} <span class="quiet">{object.kind}</span>
+        {object.title} <span class="quiet">{object.kind}</span>
       </h2>
       {object.kind === 'sphere' && (
         <>

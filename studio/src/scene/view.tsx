@@ -1,11 +1,11 @@
 /** The scene in 3D: turn it, look through the camera or from a light, move things, and see the rays of a pixel. */
 
 import { effect, untracked, useComputed } from '@preact/signals';
-import { type Change, mount, type Movement, type ObjectRef, TreePanel, type Viewer, type ViewScene } from 'snell-viewer';
+import { type Change, mount, type Movement, TreePanel, type Viewer, type ViewScene } from 'snell-viewer';
 import { useEffect, useRef, useState } from 'preact/hooks';
 import type { Base, Store } from '../store';
 import { editsFor } from './movement';
-import { objectsOf, placeOf, roundTo, type SceneObject, snapOf, type Vec3 } from './objects';
+import { placeOf, roundTo, type SceneObject, snapOf, type Vec3 } from './objects';
 import { Pace } from './pace';
 
 /** The drawing of the studio, which the panel beside it takes part in. */
@@ -25,7 +25,7 @@ export class Space {
     this.viewer = mount(parent, { scene: view }, { panel: false, header: false, toolbar: 'studio' });
     this.ends.push(
       this.viewer.on('pixel', (x, y) => store.pin([x, y])),
-      this.viewer.on('object', (object) => store.select(object?.name ?? null)),
+      this.viewer.on('object', (object) => store.select((object && store.objectOf(object)?.key) ?? null)),
       this.viewer.on('hover', (id) => this.point(id ?? this.viewer.selected)),
       this.viewer.on('select', (id) => this.point(id)),
       this.viewer.on('move', (movement) => this.move(movement)),
@@ -43,7 +43,7 @@ export class Space {
         this.pace.request();
       }),
       effect(() => {
-        void [store.selectedName.value, store.handles.value, store.snaps.value];
+        void [store.selectedKey.value, store.handles.value, store.snaps.value];
         untracked(() => this.pace.flush());
       }),
       effect(() => this.viewer.setTree(store.tree.value, { panel: store.pinned.value !== null })),
@@ -62,44 +62,30 @@ export class Space {
     this.viewer.dispose();
   }
 
-  private refOf(object: SceneObject | null): ObjectRef | null {
-    if (object === null) return null;
-    const { view } = this.store.revision.value!;
-    const { name } = object;
-    const found = (kind: ObjectRef['kind'], list: { name: string }[]): ObjectRef | null => {
-      const index = list.findIndex((one) => one.name === name);
-      return index < 0 ? null : { kind, index, name };
-    };
-    if (object.kind === 'camera') return { kind: 'camera', index: 0, name };
-    if (object.kind === 'light') return found('light', view.lights);
-    return found('sphere', view.spheres) ?? found('mesh', view.meshes);
-  }
-
   private move(movement: Movement): void {
     const { store } = this;
     if (this.drag === null) {
-      const { scene, view } = store.revision.value!;
-      const { kind, index, name } = movement.object;
-      const chosen = objectsOf(scene).find((one) => one.name === name && (one.kind === 'camera') === (kind === 'camera'));
-      const object: SceneObject | undefined = chosen?.kind === 'camera' && index === 1 ? { ...chosen, kind: 'target' } : chosen;
-      const place = object && placeOf(object, view);
+      const chosen = store.objectOf(movement.object);
+      const object: SceneObject | null = chosen?.kind === 'camera' && movement.object.index === 1 ? { ...chosen, kind: 'target' } : chosen;
+      const place = object && placeOf(object, movement.object, store.revision.value!.view);
       if (!place) return;
       this.drag = { object, ...place, group: `space ${object.key} ${performance.now()}` };
     }
     const { object, center, radius, group } = this.drag;
-    store.edit(editsFor(object, rounded(movement, radius || Math.hypot(...center)), center), { label: `${movement.kind} ${object.name}`, group });
+    store.edit(editsFor(object, rounded(movement, radius || Math.hypot(...center)), center), { label: `${movement.kind} ${object.title}`, group });
   }
 
   private show(): void {
-    const { base, revision, surface, selected, handles, snaps } = this.store;
+    const { base, revision, surface, selected, things, handles, snaps } = this.store;
     const { scene, view, size } = revision.peek()!;
     const { shown } = this;
-    this.shown = { base: base.peek(), view, size: size.join(), editing: [selected.peek()?.name, handles.peek(), snaps.peek()].join() };
+    this.shown = { base: base.peek(), view, size: size.join(), editing: [selected.peek()?.key, handles.peek(), snaps.peek()].join() };
     const isNew = view !== shown.view;
     if (isNew) this.viewer.setScene(view, { reset: this.shown.base !== shown.base });
     if (isNew || this.shown.size !== shown.size) this.viewer.setLivePicture(surface.canvas, size);
     if (isNew || this.shown.editing !== shown.editing) {
-      const ref = this.refOf(selected.peek());
+      const object = selected.peek();
+      const ref = (object && things.peek().get(object.key)?.[0]) ?? null;
       const snap = snaps.peek() ? snapOf(scene) : null;
       this.viewer.setObjects({ selected: ref, handles: ref && handles.peek(), snap, target: scene.camera.look_at as Vec3 });
     }
@@ -162,7 +148,7 @@ export function SpaceView({ store, onSpace }: { store: Store; onSpace(space: Spa
 const HANDLES = [['move', 'Move'], ['turn', 'Turn'], ['scale', 'Scale']] as const;
 
 function SpaceTools({ store, space }: { store: Store; space: Space | null }) {
-  const { lights } = store.revision.value!.view;
+  const lights = store.objects.value.filter(({ kind }) => kind === 'light');
   const selected = store.selected.value;
   const movable = selected !== null;
   return (
@@ -186,16 +172,16 @@ function SpaceTools({ store, space }: { store: Store; space: Space | null }) {
             <option value="" disabled>
               From a light
             </option>
-            {lights.map(({ name }, index) => (
-              <option key={name} value={index}>
-                {name}
+            {lights.map(({ title }, index) => (
+              <option key={index} value={index}>
+                {title}
               </option>
             ))}
           </select>
         )}
       </div>
       {/* Always there, so that the drawing beneath does not jump when something is chosen. */}
-      <div class="group" role="group" aria-label={movable ? `Handles of ${selected!.name}` : 'Handles'}>
+      <div class="group" role="group" aria-label={movable ? `Handles of ${selected!.title}` : 'Handles'}>
         {HANDLES.map(([value, title]) => (
           <button type="button" key={value} disabled={!movable} aria-pressed={movable && store.handles.value === value} onClick={() => (store.handles.value = value)}>
             {title}
