@@ -287,7 +287,7 @@ export class Store {
     const { value: comparison } = this.comparison;
     if (comparison?.options == null || this.saving > 0) return;
     this.target = comparison.surface;
-    comparison.surface.begin(...this.revision.value!.size);
+    comparison.surface.begin(...(comparison.options.size ?? this.revision.value!.size));
     this.engine.render(comparison.options);
   }
 

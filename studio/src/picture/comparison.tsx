@@ -1,10 +1,11 @@
 /** Another picture over the one that is shown, as far as a slider lays it open. */
 
 import type { ReadonlySignal } from '@preact/signals';
-import { useSignal, useSignalEffect } from '@preact/signals';
+import { useSignal } from '@preact/signals';
 import { useEffect, useRef } from 'preact/hooks';
 import type { Comparison, Store } from '../store';
-import { lay, type Zoom } from './zoom';
+import { layAlways } from './lay';
+import type { Zoom } from './zoom';
 
 export function ComparisonSlider({ store, comparison, zoom }: { store: Store; comparison: Comparison; zoom: ReadonlySignal<Zoom> }) {
   /** How much of the box's width shows the other picture. */
@@ -13,8 +14,8 @@ export function ComparisonSlider({ store, comparison, zoom }: { store: Store; co
   const { canvas } = comparison.surface;
   useEffect(() => {
     place.current!.replaceChildren(canvas);
+    return layAlways(canvas, store, zoom);
   }, [canvas]);
-  useSignalEffect(() => lay(canvas, zoom.value));
   const stop = (event: Event) => event.stopPropagation();
   const drag = (event: PointerEvent) => {
     stop(event);

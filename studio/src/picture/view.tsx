@@ -7,8 +7,9 @@ import { editsFor } from '../scene/movement';
 import type { Pixel, Store } from '../store';
 import { ComparisonSlider } from './comparison';
 import { dragged } from './drag';
+import { layAlways } from './lay';
 import { Overlay } from './overlay';
-import { aligned, fit, lay, panBy, pixelAt, type Zoom, zoomAbout } from './zoom';
+import { aligned, fit, panBy, pixelAt, type Zoom, zoomAbout } from './zoom';
 
 /** Pixels of the screen that a pointer may move between down and up in a click. */
 const CLICK = 4;
@@ -58,7 +59,9 @@ export function PictureView({ store }: { store: Store }) {
     };
     // Not passive, so that the page does not zoom as well.
     box.current!.addEventListener('wheel', wheel, { passive: false });
+    const laid = layAlways(canvas, store, placed);
     return () => {
+      laid();
       resizes.disconnect();
       overlay.current!.dispose();
     };
@@ -68,7 +71,6 @@ export function PictureView({ store }: { store: Store }) {
     if (store.revision.value && !free.current) untracked(fitted);
   });
   useSignalEffect(() => {
-    lay(store.surface.canvas, placed.value);
     void [store.hovered.value, store.pinned.value, store.tree.value, store.mask.value, store.branch.value, store.outcome.value];
     overlay.current?.draw(placed.value);
   });

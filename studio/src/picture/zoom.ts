@@ -38,13 +38,6 @@ export function aligned({ scale, x, y }: Zoom, ratio: number): Zoom {
   return { scale, x: Math.round(x * ratio) / ratio, y: Math.round(y * ratio) / ratio };
 }
 
-/** Lays a canvas where its picture is. */
-export function lay(canvas: HTMLCanvasElement, { scale, x, y }: Zoom): void {
-  canvas.style.transform = `translate(${x}px, ${y}px) scale(${scale})`;
-  // Large pixels are there to be seen. Where there are fewer than the picture has, leaving some out would only make its edges ragged.
-  canvas.style.imageRendering = scale < 1 ? 'auto' : 'pixelated';
-}
-
 export function pixelAt({ scale, x, y }: Zoom, left: number, top: number, [width, height]: Size): [number, number] | null {
   const [column, row] = [Math.floor((left - x) / scale), Math.floor((top - y) / scale)];
   return column >= 0 && row >= 0 && column < width && row < height ? [column, row] : null;
