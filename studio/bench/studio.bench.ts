@@ -214,6 +214,23 @@ material = "m"
   await page.close();
 });
 
+test('a picture of 2000 x 2000 pixels', async () => {
+  const page = await timed();
+  await finished(page);
+  await page.waitForTimeout(1000);
+  await page.evaluate(() => {
+    window.times.blocked = 0;
+    window.snell.edit([['render.size', '[2000, 2000]']], { label: 'bench' });
+  });
+  await page.waitForFunction(() => window.snell.revision.value!.size[0] === 2000);
+  await finished(page);
+  await page.evaluate(() => window.snell.save('png'));
+  await page.waitForTimeout(500);
+  const blocked = await page.evaluate(() => window.times.blocked);
+  report('a picture of 2000 x 2000 pixels, rendered and saved: the longest time that the page was blocked', `${blocked.toFixed(0)} ms (goal 50)`);
+  await page.close();
+});
+
 test('sizes', () => {
   const files = readdirSync(DIST, { recursive: true, withFileTypes: true }).filter((entry) => entry.isFile());
   let [plain, gzip, brotli] = [0, 0, 0];

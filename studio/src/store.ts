@@ -3,6 +3,7 @@
 import { batch, computed, effect, signal } from '@preact/signals';
 import type { ObjectRef, RayTreeDocument } from 'snell-viewer';
 import { Cancelled, Engine, type EngineParts, Refusal } from './engine/engine';
+import { maskOf } from './engine/lost';
 import type { Answers, Change, CompleteRevision, Edit, Finding, Given, PictureOptions, Sighting } from './engine/protocol';
 import { History, type Version } from './history';
 import { Surface } from './picture/surface';
@@ -121,7 +122,7 @@ export class Store {
   readonly mask = computed<ArrayLike<number> | null>(() => {
     const bin = this.pointedBin.value ?? this.chosenBin.value;
     const lost = this.outcome.value?.lost;
-    return bin !== null && lost ? lost.bins.map((of) => Number(of === bin)) : (this.sighting.value?.mask ?? null);
+    return bin !== null && lost ? maskOf(lost, bin) : (this.sighting.value?.mask ?? null);
   });
 
   readonly surface = new Surface();

@@ -33,6 +33,14 @@ export function lostLight([width, height]: [number, number], spp: number, unitsO
   return { pixels, bins, worst: { pixel: [most.at % width, Math.floor(most.at / width)], share: (most.units * UNIT) / spp } };
 }
 
+/** For each pixel 1 if it is in a bin, else 0. */
+export function maskOf({ bins }: LostLight, bin: number): Uint8Array {
+  const mask = new Uint8Array(bins.length);
+  // A loop, as pictures may have millions of pixels and the page waits for this.
+  for (let at = 0; at < bins.length; at++) if (bins[at] === bin) mask[at] = 1;
+  return mask;
+}
+
 function binOf(share: number): number {
   if (share === 0) return 0;
   let bin = FROM.length - 1;

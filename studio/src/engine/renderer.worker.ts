@@ -8,6 +8,8 @@ import { brokenBy, changed, findingsOf, hasLostLight, start } from './session';
 const SLICE = 12;
 /** Milliseconds between two looks at whether the first pass is complete. */
 const GLIMPSE = 1;
+/** Patches that the page is handed at once: of a large picture all of them would keep it from everything else. */
+const MOST_PATCHES = 64;
 /** Side of the pieces in which shares are dealt out, in pixels: that of the engine. */
 const PIECE = 64;
 
@@ -145,10 +147,14 @@ class Work {
     });
     const { pixels, rays } = JSON.parse(session!.progress()) as { pixels: number; rays: number };
     if (!this.isCoverTold) this.coveredIn += performance.now() - start;
-    this.isCoverTold = this.covered;
-    const { picture, covered, coveredIn } = this;
-    const told: FromRenderer = { tell: 'patches', picture, patches, covered, coveredIn, pixels, rays };
-    tell(told, patches.map(({ rgba }) => rgba.buffer));
+    const { picture, coveredIn } = this;
+    // A share without any pieces is told as well.
+    do {
+      const some = patches.splice(0, MOST_PATCHES);
+      this.isCoverTold ||= this.covered && patches.length === 0;
+      const told: FromRenderer = { tell: 'patches', picture, patches: some, covered: this.isCoverTold, coveredIn, pixels, rays };
+      tell(told, some.map(({ rgba }) => rgba.buffer));
+    } while (patches.length > 0);
   }
 
   private pieceAt(x: number, y: number): Rect {

@@ -4,6 +4,7 @@ import { effect, untracked, useComputed } from '@preact/signals';
 import { type Change, mount, type Movement, TreePanel, type Viewer, type ViewScene } from 'snell-viewer';
 import { useEffect, useRef, useState } from 'preact/hooks';
 import type { Base, Store } from '../store';
+import { SmallCopy } from './copy';
 import { editsFor } from './movement';
 import { placeOf, roundTo, type SceneObject, snapOf, type Vec3 } from './objects';
 import { Pace } from './pace';
@@ -11,10 +12,11 @@ import { Pace } from './pace';
 /** The drawing of the studio, which the panel beside it takes part in. */
 export class Space {
   readonly viewer: Viewer;
+  private readonly copy = new SmallCopy();
   private readonly ends: (() => void)[] = [];
   private readonly pace = new Pace(() => this.show());
   /** What the drawing has of the store. */
-  private shown: { base: Base | null; view: ViewScene; size: string; editing: string };
+  private shown: { base: Base | null; view: ViewScene; editing: string };
   private drag: { object: SceneObject; center: Vec3; radius: number; group: string } | null = null;
 
   constructor(
@@ -31,7 +33,7 @@ export class Space {
       this.viewer.on('move', (movement) => this.move(movement)),
       this.viewer.on('moved', () => this.moved()),
     );
-    this.shown = { base: store.base.peek(), view, size: '', editing: '' };
+    this.shown = { base: store.base.peek(), view, editing: '' };
     this.ends.push(
       effect(() => {
         void store.revision.value;
@@ -79,17 +81,16 @@ export class Space {
     const { base, revision, surface, selected, things, handles, snaps } = this.store;
     const { scene, view, size } = revision.peek()!;
     const { shown } = this;
-    this.shown = { base: base.peek(), view, size: size.join(), editing: [selected.peek()?.key, handles.peek(), snaps.peek()].join() };
+    this.shown = { base: base.peek(), view, editing: [selected.peek()?.key, handles.peek(), snaps.peek()].join() };
     const isNew = view !== shown.view;
     if (isNew) this.viewer.setScene(view, { reset: this.shown.base !== shown.base });
-    if (isNew || this.shown.size !== shown.size) this.viewer.setLivePicture(surface.canvas, size);
     if (isNew || this.shown.editing !== shown.editing) {
       const object = selected.peek();
       const ref = (object && things.peek().get(object.key)?.[0]) ?? null;
       const snap = snaps.peek() ? snapOf(scene) : null;
       this.viewer.setObjects({ selected: ref, handles: ref && handles.peek(), snap, target: scene.camera.look_at as Vec3 });
     }
-    this.viewer.pictureChanged();
+    this.viewer.setLivePicture(this.copy.of(surface.canvas), size);
   }
 
   private point(id: number | null): void {
