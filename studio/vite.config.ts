@@ -35,6 +35,7 @@ export default defineConfig({
     outDir: path('../target/studio-dist'),
     emptyOutDir: true,
     target: 'es2022',
+    chunkSizeWarningLimit: 1000, // the 3D view is three.js
     // The module is loaded while the page starts, not as text in it.
     assetsInlineLimit: 0,
   },

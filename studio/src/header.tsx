@@ -106,6 +106,7 @@ export function Header({ store, work, openGallery, openFiles, startTour, startEx
         actions={[
           { title: 'Open …', act: openFiles },
           { title: 'Save scene', hint: 'TOML', act: () => download(`${name()}.toml`, store.revision.value!.text, 'application/toml') },
+          { title: 'Save scene', hint: 'JSON', act: () => attempt(async () => download(`${name()}.json`, await store.engine.ask({ ask: 'json' }), 'application/json')) },
           { title: 'Save picture', hint: 'PNG', act: () => attempt(async () => download(`${name()}.png`, await store.save('png'), 'image/png')) },
           { title: 'Save numbers', hint: 'EXR', act: () => attempt(async () => download(`${name()}.exr`, await store.save('exr'), 'image/x-exr')) },
           {

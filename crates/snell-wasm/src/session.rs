@@ -83,6 +83,12 @@ impl Session {
         self.given.source.text.to_string()
     }
 
+    /// The scene as text, in JSON.
+    pub fn json(&self) -> Answer<String> {
+        let scene = or_throw(scene_file::parse(&self.given.source, Syntax::Toml))?;
+        or_throw(scene_file::to_text(&scene, Syntax::Json))
+    }
+
     /// Changes values in the text of the scene; comments and layout stay. `changes` are a list in JSON of keys with their values, like
     /// `[["sphere.glass.radius", "8"], ["material.glass.eta", null]]`: as for `--set`, and `null` takes a key, or an element of a
     /// list, away. A list with a whole table gets one more element. All of them or none: what is refused leaves all as it was. What was

@@ -85,6 +85,8 @@ function answer(question: Question): Answers[Question['ask']] {
       return outcome(session!);
     case 'glasses':
       return JSON.parse(Session.glasses()) as string[];
+    case 'json':
+      return session!.json();
     case 'png':
       return session!.png() as Uint8Array<ArrayBuffer>;
     case 'exr':

@@ -135,6 +135,7 @@ export type Question =
   | { ask: 'values'; x: number; y: number; width: number; height: number }
   | { ask: 'outcome' }
   | { ask: 'glasses' }
+  | { ask: 'json' }
   | { ask: 'png' | 'exr' };
 
 export interface Answers {
@@ -148,6 +149,8 @@ export interface Answers {
   outcome: { sha256: string; warnings: Finding[]; lost: LostLight | null };
   /** The names of the catalogue. */
   glasses: string[];
+  /** The scene as text. */
+  json: string;
   png: Uint8Array<ArrayBuffer>;
   exr: Uint8Array<ArrayBuffer>;
 }

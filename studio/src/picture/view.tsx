@@ -180,6 +180,9 @@ export function PictureView({ store }: { store: Store }) {
     } else if (event.key === '0') {
       free.current = false;
       fitted();
+    } else if (event.key === '1') {
+      free.current = true;
+      zoom.value = zoomAbout(zoom.value, 1 / zoom.value.scale, middleOfBox, [width, height], room());
     } else if (event.key === 'Escape' && pinned) {
       store.pin(null);
     } else {
@@ -207,6 +210,7 @@ export function PictureView({ store }: { store: Store }) {
       {store.comparison.value && <ComparisonSlider store={store} comparison={store.comparison.value} zoom={placed} />}
       <ZoomButtons
         zoom={store.revision.value ? zoom.value.scale : 1}
+        fits={store.revision.value !== null && zoom.value.scale === fit(size(), room()).scale}
         fit={() => {
           free.current = false;
           fitted();
@@ -221,12 +225,12 @@ export function PictureView({ store }: { store: Store }) {
   );
 }
 
-function ZoomButtons({ zoom, fit, by }: { zoom: number; fit(): void; by(factor: number): void }) {
+function ZoomButtons({ zoom, fits, fit, by }: { zoom: number; fits: boolean; fit(): void; by(factor: number): void }) {
   const keep = (event: Event) => event.stopPropagation();
   return (
     <div class="zoom" role="group" aria-label="Zoom" onPointerDown={keep} onPointerUp={keep}>
       <button type="button" aria-label="Zoom out" onClick={() => by(1 / 1.5)}>−</button>
-      <button type="button" aria-label={`${Math.round(100 * zoom)} %, fit the picture`} onClick={fit}>
+      <button type="button" aria-label={`${Math.round(100 * zoom)} %, ${fits ? 'show pixel for pixel' : 'fit the picture'}`} onClick={fits ? () => by(1 / zoom) : fit}>
         {Math.round(100 * zoom)} %
       </button>
       <button type="button" aria-label="Zoom in" onClick={() => by(1.5)}>+</button>
