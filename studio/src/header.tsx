@@ -90,7 +90,7 @@ export function Header({ store, work, openGallery, openFiles, startTour, startEx
           { title: 'With the lecture’s model', act: () => store.compare('lecture', { integrator: 'lecture' }) },
           { title: 'Without shadows', act: () => store.compare('no shadows', { shadows: 'off' }) },
           { title: 'With no bounce', act: () => store.compare('depth 0', { depth: 0 }) },
-          { title: 'With nothing', act: () => store.compare(null) },
+          { title: 'Stop comparing', act: () => store.compare(null) },
         ]}
       />
       <Menu

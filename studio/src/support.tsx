@@ -8,7 +8,7 @@ const VECTOR = new Uint8Array([
 /** What is missing, in words; `null` if nothing is. */
 export function missing(): string | null {
   if (typeof WebAssembly !== 'object' || typeof WebAssembly.validate !== 'function') {
-    return 'This browser has no WebAssembly, with which Snell computes its pictures. Any browser of the last years has it, unless it was switched off in the settings.';
+    return 'This browser has no WebAssembly, with which Snell computes its pictures. Any browser of recent years has it, unless it was switched off in the settings.';
   }
   if (!WebAssembly.validate(VECTOR)) {
     return 'This browser does not know the vector instructions (SIMD) of WebAssembly that Snell computes with. Chrome and Edge from 91, Firefox from 89 and Safari from 16.4 do.';

@@ -26,7 +26,7 @@ impl Gathered {
         Ok(Self { film, lost, statistics: Statistics::default() })
     }
 
-    /// The light that the pixels of a part have lost; `None` where it does not lie within.
+    /// The light that the pixels of a part have lost; `None` where the part does not lie within the picture.
     pub fn lost(&self, part: Crop) -> Option<Vec<f64>> {
         Some(rows(part, self.film.crop)?.flat_map(|row| self.lost[row].iter().copied()).collect())
     }
@@ -57,7 +57,7 @@ impl Gathered {
         Ok(())
     }
 
-    /// The rows of a part for which there are so many numbers, of which each pixel has `per_pixel`.
+    /// The rows of a part that comes with so many `numbers`, `per_pixel` for each pixel.
     fn rows_for(
         &self,
         part: Crop,

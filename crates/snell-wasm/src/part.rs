@@ -3,7 +3,8 @@
 use snell::film::Crop;
 use std::ops::Range;
 
-/// The rows of a part, as ranges of pixels of what holds `whole` row by row; `None` where the part is empty or does not lie within.
+/// The rows of a part, as ranges of pixels in what holds `whole` row by row; `None` where the part is empty or does not lie within
+/// `whole`.
 pub fn rows(part: Crop, whole: Crop) -> Option<impl Iterator<Item = Range<usize>>> {
     let along = |start: u32, length: u32, first: u32, have: u32| {
         let end = start.checked_add(length)?;

@@ -19,7 +19,7 @@ _CSS_HEIGHT = "46rem"
 _PAGE = Path(__file__).parent / "page"
 #: Bytes at a time: a notebook's server drops what comes faster than a million a second.
 _PIECE = 1 << 18
-#: Of the still picture at the start, in pixels.
+#: Width of the still picture at the start, in pixels.
 _STILL = 320
 
 
@@ -44,8 +44,8 @@ class Studio:
     Raises
     ------
     SceneError
-        If the scene cannot be drawn, or the height is no text; and when it is shown, if this installation has no page
-        of the studio.
+        If the scene cannot be drawn, or the height is not a string; and when it is shown, if this installation lacks
+        the page of the studio.
 
     Examples
     --------

@@ -36,7 +36,7 @@ export function whyDark(tree: RayTreeDocument, threshold = 0.12): string | null 
   const unfollowed = nodes.filter(({ ended }) => ended === 'depth').length;
   if (at.lines.length === 0) return `No light shines on ${at.object}: the scene has none.`;
   if (at.lines.every(({ reaches }) => !reaches)) {
-    const reasons = at.lines.map(({ light, text }) => `of ${light}, ${text}`).join('; ');
+    const reasons = at.lines.map(({ light, text }) => `${light}: ${text}`).join('; ');
     return `No light reaches ${at.object} here: ${reasons}.`;
   }
   if (unfollowed > 0) return `${unfollowed === 1 ? 'A ray was' : `${unfollowed} rays were`} not followed further, as the limit of bounces was reached.`;

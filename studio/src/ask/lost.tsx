@@ -35,7 +35,7 @@ function Histogram({ store, lost }: { store: Store; lost: LostLight }) {
     <>
       <p class="quiet">
         Rays that bounce too often or carry too little are not followed. In {count(part)} of {count(bins.length)} pixels ({percent(part / bins.length)}) this
-        leaves something out: as much of the pixel as a white thing behind those rays would have added.
+        leaves something out. It is measured by what a white thing behind those rays would have added to the pixel.
       </p>
       <ol aria-label="Pixels by how much of them is left out">
         {pixels.map((number, bin) => {

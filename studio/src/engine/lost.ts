@@ -2,7 +2,7 @@
 
 /** The engine counts throughput in whole units of this size. */
 const UNIT = 2 ** -32;
-/** Shares of a pixel from which on the bins count, but for the first one: that has the pixels that have lost nothing. */
+/** The share of a pixel at which each bin begins; but the first bin has the pixels that have lost nothing. */
 export const FROM = [0, 0, 1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1];
 /** Rows that are asked for at once. */
 const ROWS = 64;

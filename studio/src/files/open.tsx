@@ -97,7 +97,7 @@ export function DropZone({ files, children }: { files: Files; children: Componen
       {over.value && <div class="drop-here">Drop a scene with its models and textures, or a folder</div>}
       {files.candidates.length > 0 && (
         <dialog ref={shown} class="choose" aria-labelledby="choose" onClose={() => files.choose(null)}>
-          <h2 id="choose">Which of them is the scene?</h2>
+          <h2 id="choose">Which of these is the scene?</h2>
           <ul>
             {files.candidates.map((name) => (
               <li key={name}>
@@ -108,7 +108,7 @@ export function DropZone({ files, children }: { files: Files; children: Componen
             ))}
           </ul>
           <button type="button" class="plain" onClick={() => files.choose(null)}>
-            None of them
+            None of these
           </button>
         </dialog>
       )}

@@ -1,4 +1,4 @@
-/** What the page in a notebook's cell and the widget around it have of each other. */
+/** What the page in a notebook's cell and the widget around it know of each other. */
 
 import type { Work } from '../storage';
 

@@ -1,4 +1,4 @@
-/** The page in a cell of a notebook, in one file: Python gives it the scene, and has it back after each change. */
+/** The page in a cell of a notebook, in one file: Python gives it the scene, and gets it back after each change. */
 
 import { effect } from '@preact/signals';
 import { render } from 'preact';

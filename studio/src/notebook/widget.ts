@@ -1,5 +1,5 @@
 /**
- * The studio as a widget of a notebook, made with anywidget. The kernel has the page: it is asked for piece by piece, as a notebook's
+ * The studio as a widget of a notebook, made with anywidget. The kernel has the page and is asked for it piece by piece, as a notebook's
  * server drops what is sent too fast.
  */
 
@@ -33,7 +33,7 @@ const PATIENCE = 4000;
 const STILL_WIDTH = 1200;
 const PAGE = '<!doctype html><html lang="en"><meta charset="utf-8"><title>Snell Studio</title><body><div id="app"></div></body></html>';
 
-/** What anywidget calls with each view of the widget. */
+/** What anywidget calls for each view of the widget. */
 export default {
   render({ model, el }: { model: Model; el: HTMLElement }): () => void {
     const cell = new StudioCell(model, el);
@@ -100,7 +100,7 @@ class StudioCell {
   private tell({ name, text, files }: Work): void {
     const known = files === this.files;
     this.files = files;
-    // Copies of this window, since those of another are not known for what they are.
+    // Copies made in this window, since arrays of another window are not recognised as such.
     const bytes = known ? [] : files.map(([, bytes]) => new Uint8Array(bytes).buffer);
     this.model.send({ kind: 'scene', name, text, files: known ? null : files.map(([file]) => file) }, undefined, bytes);
   }

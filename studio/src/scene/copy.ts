@@ -5,7 +5,7 @@ const MOST = 1024;
 
 export class SmallCopy {
   private readonly small = document.createElement('canvas');
-  // It is read by the graphics card, which is quick from main memory.
+  // The graphics card reads it, which is quick from main memory.
   private readonly paint = this.small.getContext('2d', { willReadFrequently: true })!;
 
   /** The picture itself, or a copy that is made anew. */

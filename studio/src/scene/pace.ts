@@ -1,8 +1,8 @@
 /** Drawing again and again, without taking most of the time. */
 
-/** Milliseconds between two drawings at least, */
+/** The least time between two drawings, in milliseconds. */
 const LEAST = 120;
-/** and how many times as long as one takes. */
+/** The same, as a multiple of the time that one drawing takes. */
 const TIMES = 6;
 /** Milliseconds between two frames of a screen that has nothing to do. */
 const FRAME = 17;
@@ -28,7 +28,7 @@ export class Pace {
     this.cancel();
     this.last = performance.now();
     this.draw();
-    // What the graphics card does, or what stands in for one, is seen only in how late the frame after it comes.
+    // How long the graphics card takes, or what stands in for one, shows only in how late the frame after it comes.
     requestAnimationFrame((drawn) => requestAnimationFrame((next) => (this.cost = Math.max(0, next - drawn - FRAME))));
   }
 

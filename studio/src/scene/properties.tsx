@@ -226,7 +226,7 @@ function Presets({ store, of, label, material, optics }: { store: Store; of: str
     <div class="field">
       <label for={`${of}-preset`}>{label}</label>
       <select id={`${of}-preset`} value={chosen?.name ?? ''} onChange={(event) => choose(event.currentTarget.value)}>
-        <option value="">{material.glass ?? 'own'}</option>
+        <option value="">{material.glass ?? 'custom'}</option>
         {PRESETS.map(({ name }) => (
           <option key={name}>{name}</option>
         ))}
@@ -238,7 +238,7 @@ function Presets({ store, of, label, material, optics }: { store: Store; of: str
 function Index({ store, of, material, optics }: { store: Store; of: string; material: Material; optics: boolean }) {
   const preset = PRESETS.find(({ glass }) => glass === material.glass);
   const formula = material.cauchy != null || material.sellmeier != null;
-  if (formula) return <p class="quiet">Its index is a formula of the wavelength: see the source.</p>;
+  if (formula) return <p class="quiet">Its index is computed from the wavelength: see the source.</p>;
   const instead = INDEX.filter((key) => key !== 'eta' && key !== 'abbe' && key in material).map((key) => `${of}.${key}`);
   const eta = material.glass != null ? (preset?.eta ?? 1.5) : (material.eta ?? 1);
   return (
@@ -280,7 +280,7 @@ function PictureValues({ store, scene }: { store: Store; scene: SceneDocument })
       <Choice store={store} of="render.integrator" label="Model of light" value={render.integrator} options={MODELS} more={more} />
       <Slider store={store} of="render.max_depth" label="Depth" value={render.max_depth ?? 32} min={0} max={32} step={1} />
       <Choice store={store} of="render.shadows" label="Shadows" value={render.shadows ?? (optics ? 'tinted' : 'opaque')} options={shadows} />
-      <NumberField store={store} of="render.spp" label="Samples a pixel" value={render.spp ?? 1} min={1} step={1} />
+      <NumberField store={store} of="render.spp" label="Samples per pixel" value={render.spp ?? 1} min={1} step={1} />
       <VectorField store={store} of="render.size" label="Size" value={render.size} names={['width', 'height']} />
       {camera.near != null && store.selected.value?.kind !== 'camera' && (
         <NumberField store={store} of="camera.near" label="Image plane" value={camera.near} />

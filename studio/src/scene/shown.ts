@@ -1,4 +1,4 @@
-/** Which things of the drawing are which of the scene. The engine tells names alone, and two things may have the same. */
+/** Which things in the drawing are which objects of the scene. The engine tells only names, and two things may share one. */
 
 import type { ObjectRef, ViewScene } from 'snell-viewer';
 import { boundsOf, type SceneObject, type Vec3 } from './objects';
@@ -19,13 +19,13 @@ export function shownThings(objects: SceneObject[], view: ViewScene): Map<string
   inOrder.forEach((object, at) => {
     const things = named[viewKind(object)].get(object.name) ?? [];
     const isLast = !inOrder.slice(at + 1).some((other) => other.name === object.name && viewKind(other) === viewKind(object));
-    // Of very many places the scene does not tell how many they are.
+    // Where there are very many places, the scene does not tell how many.
     shown.set(object.key, things.splice(0, isLast ? things.length : Math.max(1, placesOf(object))));
   });
   return shown;
 }
 
-/** Of things that the engine calls the same, the one on which a point lies. */
+/** Of things that have the same name in the engine, the one on which a point lies. */
 export function nearest(things: ObjectRef[], point: Vec3, view: ViewScene): ObjectRef | undefined {
   const off = new Map(things.map((thing) => [thing, distance(thing, point, view)]));
   return [...things].sort((a, b) => off.get(a)! - off.get(b)!)[0];

@@ -15,7 +15,7 @@ export function SourcePanel({ store }: { store: Store }) {
       // Without them only their completion is missing.
       () => {},
     );
-    const failed = () => place.current?.append('The editor could not be loaded: is this page offline? The scene goes on without it.');
+    const failed = () => place.current?.append('The editor could not be loaded: is this page offline? Everything else works without it.');
     // Only who looks at the text needs its editor, which is as large as the rest of the page.
     void import('./editor').then(({ SourceEditor }) => {
       if (gone) return;

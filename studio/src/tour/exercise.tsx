@@ -92,7 +92,7 @@ export function ExerciseView({ store, exercise, go, end }: { store: Store; exerc
         {verdict.value !== null && asked && (
           <p class="answer">
             <b>{verdict.value ? '✓ Right. ' : '✗ Not quite. '}</b>
-            {exercise.explain(asked)} Its rays are in the scene now.
+            {exercise.explain(asked)} The rays of the pixel are in the scene now.
           </p>
         )}
       </div>

@@ -57,7 +57,7 @@ export const EXERCISES: Exercise[] = [
     pixel: [300, 180],
     question(tree) {
       const first = entry(tree)!;
-      return `The ray through pixel ${tree.pixel.join(', ')} goes into ${first.hit!.object} and bends towards the normal, from ${degrees(first.hit!.angle_in)} to ${degrees(first.hit!.angle_out!)}. Click the place in the picture at which it comes out on the far side, as if you could look through.`;
+      return `The ray through pixel ${tree.pixel.join(', ')} goes into ${first.hit!.object} and bends towards the normal, from ${degrees(first.hit!.angle_in)} to ${degrees(first.hit!.angle_out!)}. Click the place in the picture at which it comes out on the far side, as if you could look straight through.`;
     },
     answer: { kind: 'place', tolerance: 0.03 },
     right(tree, camera) {
@@ -67,7 +67,7 @@ export const EXERCISES: Exercise[] = [
     explain(tree) {
       const { angle_in, angle_out } = inside(tree)!.hit!;
       const leaves = angle_out === null ? 'it is mirrored there' : `it leaves at ${degrees(angle_out)}, the angle at which it came`;
-      return `It comes to the far side at ${degrees(angle_in)} to the normal, as the two normals and the ray make a triangle with two equal sides; ${leaves}.`;
+      return `It meets the far side at ${degrees(angle_in)} to the normal, as the two normals and the ray make a triangle with two equal sides; ${leaves}.`;
     },
   },
   {

@@ -46,7 +46,7 @@ export const STEPS: TourStep[] = [
   },
   {
     title: 'No bounce at all',
-    text: 'How far are rays followed? The depth says how many bounces may come after the ray from the eye. At 6 the picture is complete, for our eyes.',
+    text: 'How far are rays followed? The depth says how many bounces may come after the ray from the eye. At 6 the picture is complete, to our eyes.',
     task: 'In the panel “Scene”, set the depth to 0.',
     answer: 'Without bounces each sphere shows only its own colour, as the lights and the ambient light make it: nothing is mirrored, and the glass is as dull as a stone.',
     scene: 'lecture/diamond',
@@ -63,15 +63,15 @@ export const STEPS: TourStep[] = [
   },
   {
     title: 'A glass that bends nothing',
-    text: 'Here the sphere has the index 1, as the space around it. Light goes straight through: what is behind stands where it would stand anyhow.',
+    text: 'Here the sphere has the index 1, like the space around it. Light goes straight through: what is behind the sphere is seen where it really is.',
     task: 'Click the glass sphere and look at the angles of the ray before and behind the surface. Then pull the index up, to 1.3 or more.',
-    answer: 'Snell’s law: n₁ sin θ₁ = n₂ sin θ₂. With equal indices both angles are the same. With more, the ray bends towards the normal, and the picture in the sphere turns upside down.',
+    answer: 'Snell’s law: n₁ sin θ₁ = n₂ sin θ₂. With equal indices both angles are the same. With a higher index in the sphere, the ray bends towards the normal, and the picture in the sphere turns upside down.',
     scene: 'lecture/eta-1.0',
     found: (store) => (eta(store) ?? 1) >= 1.3,
   },
   {
     title: 'Upside down',
-    text: 'With index 2 the rays cross inside the sphere. The red mirror stands at the upper left of it. Where is it seen in the glass?',
+    text: 'With index 2 the rays cross inside the sphere. The red mirror stands to the upper left of it. Where is it seen in the glass?',
     task: 'Find a pixel of the glass that shows red through the glass, and click it.',
     answer: 'At the lower right: what comes from the left goes to the right, and from the top to the bottom. A glass ball on a table does the same with a window.',
     scene: 'lecture/default',
@@ -90,7 +90,7 @@ export const STEPS: TourStep[] = [
     title: 'Yellow from nowhere',
     text: 'The glass is gone. Three spheres are left: red, green and blue. Nothing here is yellow. And yet there are yellow pixels.',
     task: 'Find a yellow pixel and click it. Zoom in, if it helps.',
-    answer: 'They are at the sides of red and green that face each other. Green light is mirrored by red, and is added to its own colour: red and green make yellow.',
+    answer: 'They are at the sides of red and green that face each other. Red mirrors green light, which is added to red’s own colour: red and green make yellow.',
     scene: 'lecture/no-glass',
     found: (store) => {
       const [red, green, blue] = pinnedTree(store)?.color ?? [0, 0, 0];
@@ -99,8 +99,8 @@ export const STEPS: TourStep[] = [
   },
   {
     title: 'Green where no green is',
-    text: 'This is the lower left quarter of the picture, magnified. The green sphere stands at the upper right of the whole one, far outside of this view. But there is green.',
-    task: 'Use “Where is it seen?” to find all pixels that show green. By which ways do they see it?',
+    text: 'This is the lower left quarter of the picture, magnified. The green sphere stands at the upper right of the whole picture, far outside this view. But there is green.',
+    task: 'Use “Where is it seen?” to find all pixels that show green. Along which paths do they see it?',
     answer: 'Green is seen through the glass, upside down, and a few pixels see it there a second time, in a mirror that green itself mirrors. The blue mirror stands in the view and does not show it. The rays decide who sees what.',
     scene: 'study/quarter-view',
     found: (store) => store.sighting.value?.object === 'green',
@@ -108,7 +108,7 @@ export const STEPS: TourStep[] = [
   {
     title: 'Why is it dark here?',
     text: 'From each point that is met, a ray goes to each light. Whatever stands between takes the light away: a shadow.',
-    task: 'Find a pixel to which a light does not come because something is in the way, and click it.',
+    task: 'Find a pixel that a light does not reach because something is in the way, and click it.',
     answer: 'In the lecture’s model glass throws a shadow as if it were stone. Switch the shadows off in the panel “Scene”, and look again.',
     scene: 'lecture/default',
     found: (store) => pinned(store)[0]?.local?.lights.some(({ blocked_by }) => blocked_by !== null) ?? false,
@@ -123,7 +123,7 @@ export const STEPS: TourStep[] = [
     found: (store) => pinned(store).some(({ ended }) => ended === 'depth'),
   },
   {
-    title: 'What physics does otherwise',
+    title: 'What physics does differently',
     text: 'The lecture’s model gives each material fixed shares of mirror and glass. In nature the share depends on the angle: Fresnel’s equations say how much is mirrored, and all the rest goes through.',
     task: 'Change the model of light to “Whitted: real optics”, and watch the rim of the sphere.',
     answer: 'Head-on, glass of index 2 mirrors 11 % of the light; at the rim nearly all of it, so that a bright line appears there. In the lecture’s model the shares are fixed numbers, whatever the angle.',
@@ -132,9 +132,9 @@ export const STEPS: TourStep[] = [
   },
   {
     title: 'Nothing gets out',
-    text: 'Bubbles of air in a block of water. Where light comes from the denser side at a flat angle, no angle behind the surface would satisfy Snell’s law, and all of it is mirrored.',
+    text: 'Bubbles of air in a block of water. Where light comes from the denser side at a shallow angle, no angle behind the surface would satisfy Snell’s law, and all of it is mirrored.',
     task: 'Find a pixel in whose tree there is a total reflection.',
-    answer: 'Beyond the critical angle, arcsin(1/1.333) = 48.6° for water and air, the surface is a perfect mirror. It makes diamonds sparkle, and guides light through fibres.',
+    answer: 'Beyond the critical angle, arcsin(1/1.333) = 48.6° for water and air, the surface is a perfect mirror. This makes diamonds sparkle, and guides light through fibres.',
     scene: 'gallery/bubbles',
     found: (store) => pinned(store).some(({ hit }) => hit?.total_reflection === true),
   },

@@ -28,8 +28,8 @@ impl Recorder {
         self.folder.join(name)
     }
 
-    /// Hands over what was read since the last time, by the names that it needs in memory, and what the scene is called there:
-    /// where files lie above its folder, the scene lies below one that all of them are in.
+    /// Hands over what was read since the last time, under the names that it needs in memory, and the scene's name there: where
+    /// files lie above the scene's folder, all names begin in a folder that holds them all.
     pub fn take(&self, scene: &OsStr) -> (String, Named) {
         let read = self.read.lock().map(|mut read| std::mem::take(&mut *read)).unwrap_or_default();
         let above = read.keys().map(|file| steps_up(file)).max().unwrap_or(0);

@@ -89,7 +89,7 @@ fn remember(attributes: &mut LayerAttributes, recipe: Option<&str>) {
 }
 
 /// Writes layers of a picture by their names as EXR, first the picture itself; each has the channels R, G and B. All have
-/// `size[0]·size[1]` pixels, row by row. `threads` compress them, 0 for those by default. `recipe` is kept, as in other pictures.
+/// `size[0]·size[1]` pixels, row by row. `threads` compress them, 0 for the default number. `recipe` is kept, as in other pictures.
 ///
 /// # Errors
 /// When writing fails.

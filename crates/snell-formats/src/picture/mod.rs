@@ -85,7 +85,7 @@ pub struct Writing {
     pub format: Format,
     /// The curve of PNG and PPM.
     pub encoding: Encoding,
-    /// Threads that work on it, which changes no byte of it; 0 for those by default.
+    /// How many threads work on it, which changes no byte of it; 0 for the default number.
     pub threads: usize,
 }
 
@@ -104,7 +104,7 @@ impl Writing {
         crate::disk::write(path, |out| self.write_to(out, film, || recipe.map(str::to_owned)))
     }
 
-    /// The same to anything that can be written to and gone back in. The recipe is made while the pixels are encoded.
+    /// The same, to anything that allows writing and seeking. The recipe is made while the pixels are encoded.
     ///
     /// # Errors
     /// When writing fails.
@@ -125,7 +125,7 @@ impl Writing {
     }
 }
 
-/// A film as the bytes of a PNG of 8 bit, as [`Writing`] has it; `threads` work on it, 0 for those by default.
+/// A film as the bytes of an 8-bit PNG, as [`Writing`] has it; `threads` work on it, 0 for the default number.
 ///
 /// # Errors
 /// When it is too large for one.

@@ -17,7 +17,7 @@ pub(crate) fn beginning(descr: &str, shape: &str) -> Vec<u8> {
     [MAGIC, &[1, 0], &(header.len() as u16).to_le_bytes(), header.as_bytes()].concat()
 }
 
-/// Numbers that are turned into bytes at a time where they cannot be written as they are.
+/// How many numbers are turned into bytes at a time, where they cannot be written as they are.
 const BLOCK: usize = 4096;
 
 pub(super) fn write(out: &mut dyn Write, film: &Film) -> std::io::Result<()> {

@@ -104,7 +104,7 @@ impl Form<'_> {
         let width = self.film.width();
         let pixels = self.film.pixels[y * width..].iter().zip(&self.film.finished[y * width..]);
         let values = codes.chunks_exact(3).zip(pixels).flat_map(|(codes, (pixel, &done))| {
-            // Of a pixel that has a colour some samples are there, which are worth showing.
+            // A pixel that has a colour has some of its samples, which are worth showing.
             let is_seen = done || *pixel != Rgb::black();
             let alpha = (!self.opaque).then_some(if is_seen { max } else { 0 });
             codes.iter().copied().chain(alpha)
@@ -137,7 +137,7 @@ impl Adler32 {
         Self(checksum.finish())
     }
 
-    /// Of these bytes and others after them, so many: `a` of the first starts the second, and is in each of its sums.
+    /// Of these bytes and `length` others after them: `a` of the first starts the second, and is in each of its sums.
     fn then(self, other: Self, length: usize) -> Self {
         let parts = |Self(sums): Self| (u64::from(sums & 0xffff), u64::from(sums >> 16));
         let ((a, b), (a_after, b_after)) = (parts(self), parts(other));

@@ -59,7 +59,7 @@ impl Words {
     fn push(&self, codes: &[u16], bytes: &mut Vec<u8>) {
         for &code in codes {
             let (word, length) = self.0[usize::from(code as u8)];
-            // All four bytes, of which the rest is written over: a length that is known is copied in one step.
+            // All four bytes, without the surplus afterwards: a length that is known is copied in one step.
             bytes.extend_from_slice(&word);
             bytes.truncate(bytes.len() - (4 - length));
         }
@@ -89,7 +89,7 @@ pub(super) fn read<P, F: Fn(Rgb) -> P>(
         return Err(format!("it is cut off: {} values need more than {} bytes", 3 * count, bytes.len()));
     }
     let size = if max > 255 { 2 } else { 1 };
-    // One white space ends the header.
+    // One white-space character ends the header.
     let data = bytes.get(header.at + 1..).unwrap_or_default();
     if binary && data.len() < 3 * count * size {
         return Err(format!("it is cut off: {} of {} bytes of pixels are there", data.len(), 3 * count * size));

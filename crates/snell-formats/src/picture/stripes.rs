@@ -6,7 +6,7 @@ use std::ops::Range;
 /// Stripes that are in memory before they are written.
 const BATCH: usize = 64;
 
-/// Parts of a picture, cut into stripes whose size does not depend on the number of threads: neither does the file.
+/// Parts of a picture, cut into stripes whose size does not depend on the number of threads, so neither does the file.
 pub(super) struct Stripes {
     left: Range<usize>,
     each: usize,
@@ -14,7 +14,7 @@ pub(super) struct Stripes {
 }
 
 impl Stripes {
-    /// Stripes of `each` of so many parts; `threads` work on them, 0 for those by default.
+    /// Stripes of `each` parts out of `parts`; `threads` work on them, 0 for the default number.
     pub fn new(parts: usize, each: usize, threads: usize) -> Self {
         Self { left: 0..parts, each, threads }
     }
