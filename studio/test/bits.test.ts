@@ -59,8 +59,8 @@ test('at 100 % the screen shows the pixels of the file', () =>
     { viewport: { width: 1920, height: 700 } },
   ));
 
-test('a picture that was stopped is saved as far as it had come', () =>
-  on('#gallery/ball', async (page) => {
+test('a picture that was stopped is saved as it is shown, black and all', () =>
+  on('#lecture/default', async (page) => {
     await begun(page);
     // Each pixel takes long: of most there is only a coarse picture then.
     await edit(page, ['render.spp', '1000'], ['render.size', '[300, 200]']);

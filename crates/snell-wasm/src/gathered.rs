@@ -31,6 +31,15 @@ impl Gathered {
         Some(rows(part, self.film.crop)?.flat_map(|row| self.lost[row].iter().copied()).collect())
     }
 
+    /// Does something with the film as it is shown: each pixel has a colour, since the first pass is over all of them.
+    pub fn as_shown<R>(&mut self, act: impl FnOnce(&Film) -> R) -> R {
+        let shown = vec![true; self.film.finished.len()];
+        let finished = std::mem::replace(&mut self.film.finished, shown);
+        let result = act(&self.film);
+        self.film.finished = finished;
+        result
+    }
+
     /// Of what others have rendered only finished pixels count.
     pub fn progress(&self) -> Progress {
         Progress {

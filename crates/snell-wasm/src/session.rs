@@ -308,13 +308,13 @@ impl Session {
         json(&warnings.iter().cloned().chain(of_picture).collect::<Vec<_>>())
     }
 
-    /// The picture so far as a PNG of 8 bit, with its recipe.
-    pub fn png(&self) -> Answer<Vec<u8>> {
+    /// The picture so far as an 8-bit PNG, with its recipe.
+    pub fn png(&mut self) -> Answer<Vec<u8>> {
         self.file(Format::Png { sixteen_bit: false })
     }
 
     /// The picture so far as an EXR, with its recipe.
-    pub fn exr(&self) -> Answer<Vec<u8>> {
+    pub fn exr(&mut self) -> Answer<Vec<u8>> {
         self.file(Format::Exr)
     }
 }
@@ -378,12 +378,15 @@ impl Session {
         or_throw(picture.gathered())
     }
 
-    fn file(&self, format: Format) -> Answer<Vec<u8>> {
-        let film = self.film()?;
+    fn file(&mut self, format: Format) -> Answer<Vec<u8>> {
         let mut recipe = self.ready.recipe.clone();
-        recipe.remember(film);
+        recipe.remember(self.film()?);
         let writing = Writing { format, encoding: self.ready.compiled.scene().render.encoding(), threads: 1 };
-        let written = in_memory(|out| writing.write_to(out, film, || Some(recipe.to_json())));
+        let write = |film: &Film| in_memory(|out| writing.write_to(out, film, || Some(recipe.to_json())));
+        let written = match &mut self.picture {
+            Some(Picture::Gathered(gathered)) => gathered.as_shown(write),
+            _ => write(self.film()?),
+        };
         or_throw(written.map_err(|error| Report::error(format!("the picture cannot be written: {error}"))))
     }
 }

@@ -123,18 +123,22 @@ mod alone {
         worker();
     }
 
+    /// Does something, which is told that there is one thread.
     pub fn share<R>(_: usize, work: impl FnOnce(bool) -> R) -> R {
         work(false)
     }
 
+    /// What `of` makes of each item, in their order.
     pub fn map<T, R>(_: bool, items: impl IntoIterator<Item = T>, of: impl Fn(T) -> R) -> Vec<R> {
         items.into_iter().map(of).collect()
     }
 
+    /// Does both, one after the other.
     pub fn join<A, B>(a: impl FnOnce() -> A, b: impl FnOnce() -> B) -> (A, B) {
         (a(), b())
     }
 
+    /// What `here` returns, after `elsewhere` is done.
     pub fn beside<R, M>(_: usize, elsewhere: impl FnOnce() -> M, here: impl FnOnce() -> R) -> R {
         drop(elsewhere());
         here()
