@@ -101,6 +101,8 @@ impl Ready {
     pub fn save_anywhere(&mut self, rendered: &Rendered, args: &RenderArgs, output: &Path) -> Outcome {
         self.save(rendered, args, output).map_err(|Failure { code, mut reports }| {
             if let Some(report) = reports.pop() {
+                // It may have failed before the film was looked at.
+                self.recipe.remember(&rendered.film);
                 let text = self.recipe.to_json();
                 let writing = Writing { format: self.format, encoding: self.encoding(), threads: args.threads.into() };
                 reports.push(rescue(report, output, writing, rendered, &text));

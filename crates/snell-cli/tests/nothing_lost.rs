@@ -308,6 +308,8 @@ fn outputs_that_cannot_be_written() {
     // Where a picture could not be written it is kept elsewhere, and said where.
     let said = stderr(&refused(at, &["render", "scene.toml", "-o", "full.png"], &before));
     let kept = said.split("kept as ").nth(1).and_then(|rest| rest.split_whitespace().next()).unwrap();
+    let told = stdout(&run(at, &["info", kept]));
+    assert!(told.contains("film") && !told.contains("not finished"), "{told}");
     fs::remove_file(kept).unwrap();
 }
 

@@ -4,7 +4,8 @@ use super::{Explanation, explain};
 use crate::color::Rgb;
 use crate::film::Film;
 use crate::geometry::Bounds;
-use crate::scene::{Warning, WarningCode};
+use crate::scene::{Integrator, Warning, WarningCode};
+use crate::trace::{FirstSurface, Propagation};
 use crate::world::CompiledScene;
 
 /// So many columns and rows of pixels are looked at.
@@ -40,6 +41,11 @@ fn reason(compiled: &CompiledScene, film: &Film) -> String {
     let seen = pixels.filter_map(|[x, y]| explain(compiled, x, y)).map(|(explanation, _)| explanation);
     match seen.into_iter().find_map(|explanation| at_surface(compiled, &explanation)) {
         Some(reason) => reason,
+        None if all_too_near(compiled) => format!(
+            "all of it is so small that it is overlooked: nothing nearer than {:e} counts in this model of light; choose units in which it \
+             is larger, or `whitted`",
+            FirstSurface::T_MIN
+        ),
         None if all_behind(compiled) => "everything lies behind the camera".to_owned(),
         None => "the camera looks past everything that is there: see `eye`, `look_at` and the angle of view".to_owned(),
     }
@@ -68,6 +74,19 @@ fn at_surface(compiled: &CompiledScene, explanation: &Explanation) -> Option<Str
         },
     };
     Some(format!("`{object}` is seen in pixel {x},{y}, but {why}"))
+}
+
+/// Is everything nearer than what the models of the lecture and the course overlook?
+fn all_too_near(compiled: &CompiledScene) -> bool {
+    let (world, model) = (compiled.world(), compiled.settings().integrator);
+    let [width, height] = world.camera.size;
+    let (eye, _) = world.camera.ray(width / 2, height / 2);
+    let is_near = |Bounds { min, max }: Bounds| {
+        let corners: [[f64; 3]; 2] = [(min - eye).into(), (max - eye).into()];
+        corners.as_flattened().iter().all(|along| along.abs() < FirstSurface::T_MIN)
+    };
+    model != Integrator::Whitted
+        && world.objects.iter().all(|object| is_near(world.shape(object.first as usize).bounds()))
 }
 
 /// Does no shape begin in front of the camera?
