@@ -7,6 +7,9 @@ import { nativeHash } from './scenes';
 import { asCommand } from './share/code';
 import type { Store } from './store';
 
+/** The code of a picture that is black all over: its reason should not have to be looked for. */
+const BLACK = 'W203 black-picture';
+
 export function Status({ store }: { store: Store }) {
   const { pixels, total, rays, time } = store.progress.value;
   const outcome = store.outcome.value;
@@ -49,7 +52,7 @@ export function Status({ store }: { store: Store }) {
         )}
         {outcome && <Bits store={store} sha256={outcome.sha256} />}
         {warnings.length > 0 && (
-          <details class="warnings">
+          <details class="warnings" open={warnings.some(({ code }) => code === BLACK)}>
             <summary>
               {warnings.length} {warnings.length === 1 ? 'note' : 'notes'}
             </summary>

@@ -4,7 +4,7 @@ import type { Locator, Page } from 'playwright-core';
 import { expect, test } from 'vitest';
 import { project } from '../src/picture/drag';
 import { textOf } from './native';
-import { begun, finished, openText, OUT, pin, placeOf, save, studio } from './page';
+import { begun, edit, finished, openText, OUT, pin, placeOf, save, studio } from './page';
 
 const host = studio();
 const { on } = host;
@@ -211,3 +211,12 @@ function eye(page: Page): Promise<{ at: number[]; sees: string[] }> {
     return { at: position.toArray().map((value) => value / unit), sees: sees.map(({ name }) => name) };
   });
 }
+
+test('a picture that is black all over says why, and nobody has to look for it', () =>
+  on('#lecture/default', async (page) => {
+    await finished(page);
+    await edit(page, ['ambient', '0'], ['light.left.color', '0'], ['light.right.color', '0']);
+    await page.getByText('nothing sends out light: its lights are black').waitFor();
+    await edit(page, ['light.left.color', '0.5']);
+    await page.getByText('nothing sends out light').waitFor({ state: 'detached' });
+  }));
