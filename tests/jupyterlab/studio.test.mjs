@@ -22,6 +22,7 @@ hashlib.sha256(studio.scene.render(progress=False).array.tobytes()).hexdigest()`
   "(studio.scene == scene.with_('material.glass.eta', 1.25), studio.scene.folder == str(scene.folder))",
   'studio.scene.spheres[0].center',
   "(studio.scene.meshes[-1].file, studio.scene.render(progress=False).array.max() > 0, repr(studio))",
+  '(studio.scene.meshes[-1].file, studio.scene.folder == scene.folder, repr(studio))',
 ];
 const server = new Server();
 const trouble = [];
@@ -92,6 +93,13 @@ test('a scene that was dropped on the page comes to Python with its files', PATI
   assert.equal(await run(page, 4), "('../a/four.obj', np.True_, '<Studio of other>')");
 });
 
+test('back by undo, the scene has the files that it had in Python', PATIENCE, async () => {
+  await studio.getByRole('button', { name: 'Undo' }).click();
+  await studio.waitForFunction(() => window.snell.base.value.name === 'ball.toml');
+  await finished();
+  assert.equal(await run(page, 5), "('models/four.obj', True, '<Studio of gallery/ball>')");
+});
+
 test('a saved notebook keeps the picture', PATIENCE, async () => {
   await save(page);
   const { cells } = JSON.parse(readFileSync(join(folder, 'studio.ipynb'), 'utf8'));
@@ -99,6 +107,13 @@ test('a saved notebook keeps the picture', PATIENCE, async () => {
   assert.equal(pictures.length, 1);
   const width = Buffer.from(pictures[0], 'base64').readUInt32BE(16);
   assert.equal(width, 96, 'of the picture that was rendered last, not of the small one at the start');
+});
+
+test('once the kernel has started again, the page says that Python does not hear it any more', PATIENCE, async () => {
+  await page.evaluate(() => jupyterapp.shell.currentWidget.sessionContext.session.kernel.restart());
+  await studio.evaluate(() => window.snell.edit([['material.glass.eta', '1.4']], { label: 'test' }));
+  await page.getByText('The kernel that this page belongs to is gone').waitFor(PATIENCE);
+  await finished();
   assert.deepEqual(trouble, []);
 });
 

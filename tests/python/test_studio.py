@@ -48,7 +48,7 @@ def test_triangles_without_a_file_travel_as_a_model_and_come_back_as_triangles()
     mesh = snell.Mesh(corners, faces, "glass", name="cloud")
     scene = ball.replace(meshes=[*ball.meshes, mesh])
     studio = scene.studio()
-    [(name, model)] = studio._files.items()
+    [(name, model)] = studio._opened["first"].files.items()
     assert read(studio, f"scene/{name}") == model
     assert len(studio._text) < len(ball.studio()._text) + 200, "the triangles are not in the text"
     assert studio.scene == scene
@@ -62,7 +62,7 @@ def test_models_beside_and_above_the_scene_are_served(tmp_path: Path) -> None:
     mesh = snell.Mesh(file="../models/four.obj", material="glass")
     scene = ball.replace(meshes=[mesh], folder=tmp_path / "scenes", name="scenes/mine.toml")
     studio = scene.studio()
-    assert studio._page_name == "scenes/mine.toml"
+    assert studio._opened["first"].name == "scenes/mine.toml"
     assert read(studio, "scene/models/four.obj") == OBJ
     assert studio.scene == scene
 
@@ -73,28 +73,88 @@ def test_nothing_but_the_page_and_the_scene_is_served() -> None:
         assert read(studio, file) is None, file
 
 
-def test_what_the_page_says_is_the_scene_and_files_stay_in_their_folder(tmp_path: Path) -> None:
+def say(studio: Studio, opened: str, name: str, text: str, files: dict[str, bytes] | None = None) -> str:
+    """Tell a studio what the page tells it; return what it complains about."""
+    front = FrontEnd()
+    names = None if files is None else list(files)
+    message = {"kind": "scene", "opened": opened, "name": name, "text": text, "files": names}
+    studio._hear(front, message, [memoryview(data) for data in (files or {}).values()])
+    return " ".join(str(said["message"]) for said, _ in front.heard)
+
+
+def test_what_the_page_says_is_the_scene() -> None:
     studio = snell.scenes["lecture/default"].studio()
     text = studio._text.replace("eta = 2.0", "eta = 1.5")
     assert text != studio._text
-    studio._hear(FrontEnd(), {"kind": "scene", "name": "default.toml", "text": text, "files": None}, [])
+    assert say(studio, "first", "default.toml", text) == ""
     assert studio.scene.plain()["material"]["glass"]["eta"] == 1.5
     assert studio.scene.folder == "."
 
-    outside = tmp_path / "outside.obj"
-    files = ["../../../../../.." + str(outside), str(outside), "models/four.obj"]
-    message = {"kind": "scene", "name": "../../x/dropped.toml", "text": text, "files": files}
-    studio._hear(FrontEnd(), message, [OBJ, memoryview(OBJ), OBJ])
-    assert not outside.exists()
-    folder = Path(studio.scene.folder)
-    assert (folder.parent / "models/four.obj").read_bytes() == OBJ
-    assert repr(studio) == "<Studio of dropped>"
+
+def test_other_scenes_come_with_their_files_and_the_first_one_stays_what_it_was(tmp_path: Path) -> None:
+    (tmp_path / "four.obj").write_bytes(OBJ)
+    ball = snell.scenes["gallery/ball"]
+    corners = np.random.default_rng(3).standard_normal((3600, 3))
+    cloud = snell.Mesh(corners, np.arange(3600).reshape(-1, 3), "glass", name="cloud", open="opaque")
+    meshes = [snell.Mesh(file="four.obj", material="glass"), cloud]
+    scene = ball.replace(meshes=meshes, folder=tmp_path, name="mine")
+    studio = scene.studio()
+    first = studio._text
+    text = first.split("[[mesh]]", maxsplit=1)[0] + '[[mesh]]\nfile = "../a/four.obj"\nmaterial = "glass"\n'
+    assert say(studio, "1-2", "b/other.toml", text, {"a/four.obj": OBJ}) == ""
+    one = studio.scene
+    assert repr(studio) == "<Studio of other>"
+    assert say(studio, "3-4", "b/another.toml", text, {"a/four.obj": OBJ}) == ""
+    for taken in (one, studio.scene):
+        assert taken.render(width=8, progress=False).array.shape[1] == 8, "the files of each are still there"
+    # Back by undo, or from another view of the same studio: as if nothing had been.
+    assert say(studio, "first", "mine.toml", first) == ""
+    assert studio.scene == scene
+    assert (studio.scene.folder, studio.scene.name) == (tmp_path, "mine")
+    folder = Path(one.folder)
     del studio
     assert not folder.exists(), "copies go with the studio"
 
 
 @pytest.mark.parametrize(
-    "message", [None, {}, {"kind": "read"}, {"kind": "read", "file": 1, "from": "x"}, {"kind": "scene", "text": 3}]
+    "name", ["../../../../../../{}", "{}", "/{}", "//{}", "x/../../../../../../../{}", "..\\..\\{}", "C:\\{}"]
+)
+def test_no_name_leads_out_of_the_folder_of_copies(tmp_path: Path, name: str) -> None:
+    outside = tmp_path / "precious.txt"
+    outside.write_text("precious")
+    studio = snell.scenes["lecture/default"].studio()
+    where = name.format(str(outside).lstrip("/"))
+    assert say(studio, "1", where, studio._text, {where: b"gone", name.format(outside): b"gone"}) == ""
+    assert outside.read_text() == "precious"
+    assert studio._copies is not None
+    assert Path(studio.scene.folder).is_relative_to(studio._copies.name)
+
+
+@pytest.mark.parametrize("files", [{"n" * 300: b""}, {"": b""}, {"..": b""}, {"a\0b": b""}, {"d": b"", "d/e": b""}])
+def test_files_that_cannot_be_kept_are_refused_and_nothing_changes(files: dict[str, bytes]) -> None:
+    scene = snell.scenes["lecture/default"]
+    studio = scene.studio()
+    assert "could not take this scene" in say(studio, "1", "x.toml", "snell = 1", files)
+    assert studio.scene == scene
+    assert repr(studio) == "<Studio of lecture/default>"
+    front = FrontEnd()
+    for names in (7, [1], ["a", "b"], None):
+        message = {"kind": "scene", "opened": "2", "name": "x.toml", "text": "snell = 1", "files": names}
+        studio._hear(front, message, [b""])
+    assert len(front.heard) == 4
+    assert studio.scene == scene
+
+
+@pytest.mark.parametrize(
+    "message",
+    [
+        None,
+        {},
+        {"kind": "read"},
+        {"kind": "read", "file": 1, "from": "x"},
+        {"kind": "read", "file": "scene/a", "from": -1},
+        {"kind": "scene", "text": 3},
+    ],
 )
 def test_what_is_no_message_changes_nothing(message: object) -> None:
     studio = snell.scenes["lecture/default"].studio()

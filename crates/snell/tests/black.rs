@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use snell::explain::black_picture;
+use snell::geometry::bvh::Quality;
 use snell::render::{Options, render};
 use snell_formats::Source;
 use snell_formats::load::{Kind, LoadOptions, load_text};
@@ -39,7 +40,7 @@ fn said(changes: &[(&str, &str)]) -> Option<String> {
     });
     let loaded =
         load_text(Source::new("scene.toml", text), Kind::Toml, Path::new("."), &LoadOptions::default()).unwrap();
-    let compiled = loaded.compile("scene", Default::default(), 1).unwrap();
+    let compiled = loaded.compile("scene", Quality::default(), 1).unwrap();
     let film = render(compiled.world(), &compiled.settings(), &Options::default()).unwrap().film;
     black_picture(&compiled, &film).map(|warning| warning.message)
 }

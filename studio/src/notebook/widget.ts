@@ -8,8 +8,8 @@ import type { Work } from '../storage';
 import type { NotebookHost } from './host';
 
 interface Traits {
-  /** The scene, and the names of its files. */
-  scene: { name: string; text: string; files: string[] };
+  /** The scene, the names of its files, and by which name Python knows what was opened. */
+  scene: { name: string; text: string; files: string[]; opened: string };
   /** As a length of CSS. */
   height: string;
 }
@@ -17,7 +17,7 @@ interface Traits {
 /** What the widget tells Python; the bytes of files, and a PNG, are buffers. */
 type Message =
   | { kind: 'read'; file: string; from: number }
-  | { kind: 'scene'; name: string; text: string; files: string[] | null }
+  | { kind: 'scene'; name: string; text: string; opened: string; files: string[] | null }
   | { kind: 'still' };
 
 /** The part of anywidget's model that is used here. */
@@ -46,8 +46,8 @@ class StudioCell {
   private readonly note = document.createElement('p');
   private readonly ends: (() => void)[] = [];
   private readonly addresses: string[] = [];
-  /** The files that Python has. */
-  private files: Work['files'] = [];
+  /** What Python knows, and by which names: what was opened is told apart by its files, which are never changed in place. */
+  private readonly known = new Map<Work['files'] | string, string>();
 
   constructor(
     private readonly model: Model,
@@ -59,8 +59,14 @@ class StudioCell {
     Object.assign(this.frame.style, { border: '0', width: '100%', height: model.get('height') || '44rem', display: 'block' });
     el.replaceChildren(this.note, this.frame);
     this.ends.push(hideStillBefore(el));
+    const hear = (message: unknown) => {
+      const { kind, message: text } = Object(message) as { kind?: unknown; message?: unknown };
+      if (kind === 'error') this.say(String(text));
+    };
+    model.on('msg:custom', hear);
+    this.ends.push(() => model.off('msg:custom', hear));
     const loaded = new Promise((done) => this.frame.addEventListener('load', done, { once: true }));
-    this.open(loaded).catch((error: unknown) => (this.note.textContent = `Snell Studio could not be loaded: ${String(error)}`));
+    this.open(loaded).catch((error: unknown) => this.say(`Snell Studio could not be loaded: ${String(error)}`));
   }
 
   dispose(): void {
@@ -69,12 +75,15 @@ class StudioCell {
   }
 
   private async open(loaded: Promise<unknown>): Promise<void> {
-    const { name, text, files } = this.model.get('scene');
+    const { name, text, files, opened } = this.model.get('scene');
+    const all: Work['files'] = [];
     const [script, style, module] = [await this.packed('studio.js'), await this.packed('studio.css'), await this.packed('snell.wasm')];
-    for (const file of files) this.files.push([file, new Uint8Array(await (await this.read(`scene/${file}`)).arrayBuffer())]);
+    for (const file of files) all.push([file, new Uint8Array(await (await this.read(`scene/${file}`)).arrayBuffer())]);
     await loaded;
     const page = this.frame.contentWindow!;
-    page.snellHost = this.hostFor({ name, text, files: this.files }, this.address(module, 'application/wasm'));
+    const scene: Work = { name, text, files: all };
+    this.known.set(keyOf(scene), opened);
+    page.snellHost = this.hostFor(scene, this.address(module, 'application/wasm'));
     const sheet = page.document.createElement('style');
     sheet.textContent = await style.text();
     page.document.head.append(sheet);
@@ -97,12 +106,28 @@ class StudioCell {
     };
   }
 
-  private tell({ name, text, files }: Work): void {
-    const known = files === this.files;
-    this.files = files;
+  private tell(work: Work): void {
+    const { name, text, files } = work;
+    const before = this.known.get(keyOf(work));
+    const opened = before ?? crypto.getRandomValues(new Uint32Array(4)).join('-');
+    this.known.set(keyOf(work), opened);
     // Copies made in this window, since arrays of another window are not recognised as such.
-    const bytes = known ? [] : files.map(([, bytes]) => new Uint8Array(bytes).buffer);
-    this.model.send({ kind: 'scene', name, text, files: known ? null : files.map(([file]) => file) }, undefined, bytes);
+    const bytes = before === undefined ? files.map(([, bytes]) => new Uint8Array(bytes).buffer) : [];
+    this.send({ kind: 'scene', name, text, opened, files: before === undefined ? files.map(([file]) => file) : null }, bytes);
+  }
+
+  private send(message: Message, buffers?: ArrayBuffer[]): void {
+    try {
+      this.model.send(message, undefined, buffers);
+    } catch {
+      this.say('The kernel that this page belongs to is gone: what is changed here does not come back to Python. Save the scene, or run the cell again.');
+    }
+  }
+
+  /** Above the page. */
+  private say(words: string): void {
+    this.note.textContent = words;
+    this.frame.before(this.note);
   }
 
   private async makeStill(canvas: HTMLCanvasElement): Promise<void> {
@@ -110,7 +135,7 @@ class StudioCell {
     const still = new OffscreenCanvas(Math.ceil(canvas.width * scale), Math.ceil(canvas.height * scale));
     still.getContext('2d')!.drawImage(canvas, 0, 0, still.width, still.height);
     const png = await still.convertToBlob({ type: 'image/png' });
-    this.model.send({ kind: 'still' }, undefined, [await png.arrayBuffer()]);
+    this.send({ kind: 'still' }, [await png.arrayBuffer()]);
   }
 
   private address(file: Blob, type: string): string {
@@ -139,7 +164,7 @@ class StudioCell {
 
   private piece(file: string, from: number): Promise<{ size: number; bytes: DataView<ArrayBuffer> }> {
     return new Promise((resolve, reject) => {
-      const ask = () => this.model.send({ kind: 'read', file, from });
+      const ask = () => this.send({ kind: 'read', file, from });
       const again = setInterval(ask, PATIENCE);
       const hear = (message: unknown, buffers: DataView[]) => {
         const told = Object(message) as { kind?: string; file?: string; from?: number; size?: number };
@@ -153,4 +178,9 @@ class StudioCell {
       ask();
     });
   }
+}
+
+/** A built-in scene has no files, and is known by its name. */
+function keyOf({ name, files }: Work): Work['files'] | string {
+  return files.length > 0 ? files : name;
 }
