@@ -77,7 +77,8 @@ describe('the scene alone', () => {
     const before = await stage.screenshot();
     await page.evaluate((tree) => window.viewer.setTree(tree), data.tree);
     await settled(page);
-    expect((await stage.screenshot()).equals(before)).toBe(true);
+    // A slow machine may need more frames than were waited for.
+    await expect.poll(async () => (await stage.screenshot()).equals(before), { timeout: 10_000 }).toBe(true);
     await page.close();
   });
 
