@@ -112,8 +112,9 @@ export async function begun(page: Page): Promise<void> {
 
 /** Waits for the whole picture; returns its hash. */
 export async function finished(page: Page): Promise<string> {
-  await page.waitForFunction(() => window.snell?.outcome.value !== null && window.snell?.outcome.value !== undefined, undefined, { timeout: 60_000 });
-  return page.evaluate(() => window.snell.outcome.value!.sha256);
+  // At once: the next picture may begin before it is asked for.
+  const hash = await page.waitForFunction(() => window.snell?.outcome.value?.sha256, undefined, { timeout: 60_000 });
+  return (await hash.jsonValue())!;
 }
 
 /** Where a pixel of the picture is on the screen. */
