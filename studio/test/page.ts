@@ -112,9 +112,12 @@ export async function begun(page: Page): Promise<void> {
 
 /** Waits for the whole picture; returns its hash. */
 export async function finished(page: Page): Promise<string> {
-  // At once: the next picture may begin before it is asked for.
-  const hash = await page.waitForFunction(() => window.snell?.outcome.value?.sha256, undefined, { timeout: 60_000 });
-  return (await hash.jsonValue())!;
+  for (;;) {
+    await page.waitForFunction(() => window.snell?.outcome.value !== null && window.snell?.outcome.value !== undefined, undefined, { timeout: 60_000 });
+    // The next picture may have begun meanwhile.
+    const hash = await page.evaluate(() => window.snell.outcome.value?.sha256 ?? null);
+    if (hash !== null) return hash;
+  }
 }
 
 /** Where a pixel of the picture is on the screen. */
