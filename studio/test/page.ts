@@ -120,13 +120,13 @@ export async function finished(page: Page): Promise<string> {
   }
 }
 
-/** Where a pixel of the picture is on the screen. */
+/** Where a pixel of the scene's picture is on the screen, also while the picture before, of another size, is still shown there. */
 export async function placeOf(page: Page, [x, y]: Pixel): Promise<{ x: number; y: number }> {
   return page.evaluate(
     ([x, y]) => {
-      const canvas = window.snell.surface.canvas;
-      const { left, top, width, height } = canvas.getBoundingClientRect();
-      return { x: left + ((x! + 0.5) * width) / canvas.width, y: top + ((y! + 0.5) * height) / canvas.height };
+      const { left, top, width, height } = window.snell.surface.canvas.getBoundingClientRect();
+      const [columns, rows] = window.snell.revision.value!.size;
+      return { x: left + ((x! + 0.5) * width) / columns, y: top + ((y! + 0.5) * height) / rows };
     },
     [x, y],
   );
